@@ -1,5 +1,5 @@
-//! Factorisations that say when they cannot be trusted: dense, and sparse with thin borders. May be called by everything
-//! above; calls nothing.
+//! Linear algebra: dense factorisations and factorisations of sparse bordered matrices, which report when they are
+//! unreliable. All higher layers may use this module; it uses none of them.
 
 pub mod dense;
 pub(crate) mod scalar_root;
@@ -13,7 +13,7 @@ pub use dense::solve_counters::{factorisations, solves};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
-/// A factorisation of a system, as it was assembled.
+/// The factorisation of a system, dense or sparse as the system was assembled.
 pub enum SystemFactorisation {
     Dense(Factorisation),
     Sparse(Arc<sparse::SparseFactorisation>),
@@ -28,7 +28,7 @@ impl SystemFactorisation {
         }
     }
 
-    /// Smallest pivot over the largest one.
+    /// Ratio of the smallest to the largest pivot magnitude.
     pub fn pivot_ratio(&self) -> f64 {
         match self {
             Self::Dense(dense) => dense.pivot_ratio(),
@@ -44,7 +44,7 @@ impl SystemFactorisation {
         }
     }
 
-    /// The same without looking at what the solution leaves over, for whoever does so himself.
+    /// Solves like [`Self::solve`] but without checking the residual, for callers that check it themselves.
     pub fn solve_once(&self, right_hand_side: &mut DVector<f64>) -> bool {
         match self {
             Self::Dense(dense) => dense.solve(right_hand_side),
@@ -53,17 +53,17 @@ impl SystemFactorisation {
     }
 }
 
-/// A determinant as its sign and its size's natural logarithm.
+/// A determinant as its sign and the natural logarithm of its magnitude.
 #[derive(Debug, Clone, Copy)]
 pub struct Determinant {
-    /// 0 where a pivot is.
+    /// Sign of the determinant: 1 or -1, or 0 where a pivot is 0.
     pub sign: f64,
     pub logarithm: f64,
-    /// Smallest pivot over the largest one.
+    /// Ratio of the smallest to the largest pivot magnitude.
     pub pivot_ratio: f64,
 }
 
-/// The determinant of any square matrix, its rows as they are. `None` when a number is not finite.
+/// The determinant of any square matrix, without row scaling. `None` when an entry is not finite.
 pub fn determinant(matrix: DMatrix<f64>) -> Option<Determinant> {
     if !matrix.iter().all(|value| value.is_finite()) {
         return None;
@@ -88,10 +88,10 @@ pub fn determinant(matrix: DMatrix<f64>) -> Option<Determinant> {
     Some(Determinant { sign, logarithm, pivot_ratio })
 }
 
-/// A basis of the null space, one vector a column, by elimination with complete pivoting.
+/// A basis of the null space, one vector per column, by elimination with complete pivoting.
 ///
-/// Rows are brought to unit size first; a pivot below `tolerance` of the first one ends the elimination, so that the
-/// rank is decided once for the whole matrix. `None` when a number is not finite.
+/// Rows are scaled to unit maximum norm first; a pivot below `tolerance` times the first pivot ends the elimination, so
+/// that the rank is decided once for the whole matrix. `None` when an entry is not finite.
 pub fn null_space(matrix: &DMatrix<f64>, tolerance: f64) -> Option<DMatrix<f64>> {
     let mut work = matrix.clone();
     for mut row in work.row_iter_mut() {
@@ -106,19 +106,20 @@ pub fn null_space(matrix: &DMatrix<f64>, tolerance: f64) -> Option<DMatrix<f64>>
     null_space_as_scaled(work, tolerance)
 }
 
-/// The same without a change of the rows' sizes: a row that is nothing but round-off counts as zero.
+/// A basis of the null space as in [`null_space`], without row scaling: a row of pure round-off counts as zero.
 pub fn null_space_as_scaled(work: DMatrix<f64>, tolerance: f64) -> Option<DMatrix<f64>> {
     let most = work.ncols();
     eliminated(work, tolerance, most)
 }
 
-/// So many vectors that come nearest to a null space: the elimination ends at the rank that leaves them.
+/// `dimension` vectors nearest to a null space: the elimination stops at the rank `ncols - dimension`.
 pub fn nearest_null_space(work: DMatrix<f64>, dimension: usize) -> Option<DMatrix<f64>> {
     let most = work.ncols().checked_sub(dimension)?;
     eliminated(work, 0.0, most)
 }
 
-/// Complete pivoting until the pivots are small or the rank is reached; a basis of the null space of what was eliminated.
+/// Eliminates with complete pivoting until the pivots are small or the rank reaches `most`; returns a basis of the null
+/// space of the eliminated rows.
 fn eliminated(mut work: DMatrix<f64>, tolerance: f64, most: usize) -> Option<DMatrix<f64>> {
     let (rows, columns) = work.shape();
     if !work.iter().all(|value| value.is_finite()) {
@@ -147,7 +148,7 @@ fn eliminated(mut work: DMatrix<f64>, tolerance: f64, most: usize) -> Option<DMa
         work.swap_rows(rank, place.0);
         work.swap_columns(rank, place.1);
         order.swap(rank, place.1);
-        // Column by column, as they lie in memory; what is below the pivot holds the factors.
+        // Column by column, in storage order; the entries below the pivot hold the multipliers.
         let pivot = work[(rank, rank)];
         work.column_mut(rank).iter_mut().skip(rank + 1).for_each(|value| *value /= pivot);
         let (before, after) = work.as_mut_slice().split_at_mut((rank + 1) * rows);

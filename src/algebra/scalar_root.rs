@@ -1,13 +1,13 @@
 //! A root in a bracket, by inverse quadratic interpolation guarded by bisection
 //! (T. R. Chandrupatla, Adv. Eng. Softw. 28 (1997) 145, doi:10.1016/S0965-9978(96)00051-8).
 
-/// Evaluations before the bracket is taken as it is.
+/// Number of evaluations after which the current bracket is accepted.
 const MOST_EVALUATIONS: usize = 120;
 
-/// The last point at which `evaluate` is not negative, to round-off.
+/// A root of `evaluate` in a bracket, to round-off.
 ///
-/// `positive` and `negative` are `(place, value)` with values of those signs. `zero` is the size below which a value
-/// counts as zero. `None` when `evaluate` fails.
+/// `positive` and `negative` are pairs `(argument, value)` with values of these signs. A value of magnitude up to
+/// `zero` counts as zero. `None` when `evaluate` fails or its value is not finite.
 pub fn find_root(
     mut evaluate: impl FnMut(f64) -> Option<f64>,
     positive: (f64, f64),

@@ -1,7 +1,7 @@
 //! Complementarity problems: the mathematical programs of increments ([`mpec`]) and the rate problems of directions ([`rates`],
 //! [`rate_search`]).
 //!
-//! Knows vectors, matrices and linear forms only: nothing of structures, contacts or paths.
+//! Uses vectors, matrices and linear forms only, and is independent of structures, contacts and paths.
 
 pub mod mpec;
 pub mod rate_search;

@@ -1,8 +1,8 @@
-//! What a matrix is assembled into, entry by entry.
+//! The target of the assembly of a matrix, entry by entry.
 
 use nalgebra::DMatrix;
 
-/// What a matrix is assembled into.
+/// The target of the assembly of a matrix.
 pub trait Sink {
     /// Adds to an entry.
     fn add(&mut self, row: usize, column: usize, value: f64);

@@ -1,5 +1,5 @@
-//! Dense LU factorisations with partial pivoting. The few equations of a small scene are factorised by code for just
-//! their number, which spends nothing on loops.
+//! Dense LU factorisations with partial pivoting. Systems of two to six equations use code specialised to their size,
+//! without loop overhead.
 
 use crate::algebra::dense::interruptible_lu::LargeLu;
 use crate::algebra::dense::lu_factors::DenseFactors;
@@ -9,18 +9,18 @@ use nalgebra::allocator::Allocator;
 use nalgebra::constraint::{SameNumberOfRows, ShapeConstraint};
 use nalgebra::{Const, DMatrix, DVector, DefaultAllocator, Dim, DimMin, Dyn, LU, OMatrix, OVector, SMatrix};
 
-/// An LU factorisation with partial pivoting of a square matrix whose rows were brought to unit size first.
+/// An LU factorisation with partial pivoting of a square matrix, with rows scaled to unit maximum norm.
 pub struct Factorisation {
-    /// Rows of the matrix that was asked for; the rest are those of [`Stiffener`]s.
+    /// Number of rows of the given matrix; further rows belong to [`Stiffener`]s.
     size: usize,
     factors: Box<dyn DenseFactors>,
-    /// Smallest pivot over the largest one.
+    /// Ratio of the smallest to the largest pivot magnitude.
     pivot_ratio: f64,
-    /// Sign by which the determinant of what is factorised differs from the one of the matrix asked for.
+    /// Sign factor between the determinants of the factorised matrix and of the given matrix.
     sign: f64,
 }
 
-/// A summand `k r cᵀ` of a matrix, kept apart from it.
+/// A summand `k r cᵀ` of a matrix, stored separately.
 #[derive(Debug, Clone)]
 pub struct Stiffener {
     /// Not zero.
@@ -31,12 +31,12 @@ pub struct Stiffener {
     pub columns: Vec<(usize, f64)>,
 }
 
-/// Pivots below this fraction of the largest one count as zero (rows have unit size).
+/// Pivots below this fraction of the largest pivot count as zero (rows have unit maximum norm).
 const SMALLEST_PIVOT: f64 = 1e-14;
-/// Rows up to which a matrix is factorised in one piece.
+/// Number of rows up to which a matrix is factorised in one piece.
 pub(crate) const MOST_AT_ONCE: usize = 500;
 
-/// Those of a matrix whose rows were divided by their sizes.
+/// The factors of a matrix with scaled rows.
 struct RowScaledFactors<D: DimMin<D, Output = D>>
 where
     DefaultAllocator: Allocator<D, D> + Allocator<D>,
@@ -69,12 +69,12 @@ where
     }
 }
 
-/// Divides the rows of a square matrix, column by column, by their largest entries, which are returned in a vector of
-/// zeros; `false` where a row is zero or holds a number that is not finite.
+/// Divides the rows of a square matrix, stored by columns, by their largest magnitudes, which are written to `scales`
+/// (zero on entry); `false` where a row is zero or has an entry that is not finite.
 #[inline(always)]
 fn divide_rows(entries: &mut [f64], scales: &mut [f64]) -> bool {
     let size = scales.len();
-    // Stays zero while all numbers are finite: zero times what is not is no number.
+    // Remains zero while all entries are finite: zero times infinity or NaN is NaN.
     let mut zero = 0.0;
     for column in entries.chunks_exact(size.max(1)) {
         for (scale, value) in scales.iter_mut().zip(column) {
@@ -91,7 +91,7 @@ fn divide_rows(entries: &mut [f64], scales: &mut [f64]) -> bool {
     true
 }
 
-/// The smallest pivot over the largest; `None` where it is too small, or no number.
+/// Ratio of the smallest to the largest pivot magnitude; `None` where it is too small or not a number.
 fn ratio(pivots: impl ExactSizeIterator<Item = f64>) -> Option<f64> {
     let is_empty = pivots.len() == 0;
     let (smallest, largest) = pivots.fold((f64::INFINITY, 0.0_f64), |(smallest, largest), pivot| {
@@ -126,7 +126,7 @@ impl Factorisation {
         }
     }
 
-    /// Of a large matrix whose rows are of unit size.
+    /// Factorises a large matrix with scaled rows.
     fn large(matrix: DMatrix<f64>, row_scales: DVector<f64>) -> Option<Self> {
         let lu = LargeLu::new(matrix, row_scales);
         let pivot_ratio = ratio(lu.pivots())?;
@@ -143,7 +143,7 @@ impl Factorisation {
         is_regular.then(|| Self::scaled(matrix, row_scales)).flatten()
     }
 
-    /// Of a matrix whose rows are of unit size.
+    /// Factorises a matrix with scaled rows.
     fn scaled<D: Dim + DimMin<D, Output = D>>(matrix: OMatrix<f64, D, D>, row_scales: OVector<f64, D>) -> Option<Self>
     where
         DefaultAllocator: Allocator<D, D> + Allocator<D>,
@@ -157,7 +157,7 @@ impl Factorisation {
     }
 
     /// Factorises `A + Σ k r cᵀ` as `[[A, R], [Cᵀ, -1/K]]`, where large and small stiffnesses are never added, so that
-    /// the small ones keep their digits (a mixed formulation: the new unknowns are the forces `k c·x`).
+    /// the small stiffnesses keep their digits (a mixed formulation: the new unknowns are the forces `k c·x`).
     pub fn stiffened(matrix: DMatrix<f64>, stiffeners: &[Stiffener]) -> Option<Self> {
         let (size, added) = (matrix.nrows(), stiffeners.len());
         let mut matrix = matrix.resize(size + added, size + added, 0.0);
@@ -177,7 +177,7 @@ impl Factorisation {
         self.sign * self.factors.determinant_sign()
     }
 
-    /// Smallest pivot over the largest one.
+    /// Ratio of the smallest to the largest pivot magnitude.
     pub fn pivot_ratio(&self) -> f64 {
         self.pivot_ratio
     }
@@ -203,8 +203,8 @@ impl Factorisation {
 mod tests {
     use super::*;
 
-    /// Of each size, known to the compiler or not: what is left over of a solution, and the sign of the determinant beside
-    /// that of a matrix of unknown size.
+    /// For each size, specialised or not: the residual of a solution, and the sign of the determinant against that from
+    /// the general algorithm.
     #[test]
     fn every_size_is_solved() {
         for size in (0..9).chain([MOST_AT_ONCE + 7]) {
@@ -246,7 +246,8 @@ mod tests {
         assert!((solution[0] - 1.0).abs() < 1e-12 && (solution[1] - 2.0).abs() < 1e-12);
     }
 
-    /// Springs 1 and 1e15 in series, pulled by 1: `x = (1, 1 + 1e-15)`. Added up, 1 and 1e15 lose the soft one.
+    /// Springs of stiffness 1 and 1e15 in series under a unit force: `x = (1, 1 + 1e-15)`. The sum of 1 and 1e15 would
+    /// lose the soft spring.
     #[test]
     fn a_stiffness_kept_apart_spares_the_soft_one() {
         let soft = DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 0.0]);

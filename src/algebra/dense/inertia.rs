@@ -1,9 +1,10 @@
 //! The inertia of a symmetric matrix: how many eigenvalues are negative, zero and positive.
 //!
-//! `P A Pᵀ = L D Lᵀ` with 1x1 and 2x2 pivots has the inertia of `D` (Sylvester's law). The library factorises; a 1x1 pivot
-//! is nearly as large as what stands beside it, the entry off the diagonal of a 2x2 pivot the largest of both of its rows
-//! (rook pivoting: C. Ashcraft, R. G. Grimes, J. G. Lewis, SIAM J. Matrix Anal. Appl. 20 (1998) 513,
-//! doi:10.1137/S0895479896296921). So entries grow by a bounded factor, and a 2x2 pivot has an eigenvalue of either sign.
+//! `P A Pᵀ = L D Lᵀ` with 1x1 and 2x2 pivots has the inertia of `D` (Sylvester's law). The `faer` library factorises; a
+//! 1x1 pivot is nearly as large as the other entries of its row, and the off-diagonal entry of a 2x2 pivot is the
+//! largest of both its rows (rook pivoting: C. Ashcraft, R. G. Grimes, J. G. Lewis, SIAM J. Matrix Anal. Appl. 20
+//! (1998) 513, doi:10.1137/S0895479896296921). The growth of entries is therefore bounded, and a 2x2 pivot has one
+//! eigenvalue of each sign.
 
 use crate::resources::budget;
 use faer::dyn_stack::MemStack;
@@ -25,7 +26,8 @@ pub struct Inertia {
 
 /// Counts the eigenvalues of a symmetric matrix by sign; only the lower triangle is read.
 ///
-/// Pivots of size up to `tolerance` times the largest entry count as zero. `None` when a number is not finite, or becomes so.
+/// Pivots of magnitude up to `tolerance` times the largest entry count as zero. `None` when an entry of the matrix or
+/// of `D` is not finite.
 pub fn inertia(mut a: DMatrix<f64>, tolerance: f64) -> Option<Inertia> {
     let size = a.nrows();
     let mut largest = 0.0_f64;
@@ -61,16 +63,17 @@ pub fn inertia(mut a: DMatrix<f64>, tolerance: f64) -> Option<Inertia> {
     Some(count)
 }
 
-/// Numbers of a small matrix's rows, which take no memory of their own.
+/// One value for each row; a small matrix needs no heap allocation.
 type Few<T> = SmallVec<[T; FEW]>;
 const FEW: usize = 16;
 
-/// Writes `D` over the diagonal; answers what its 2x2 pivots have off the diagonal, at the first of their places.
+/// Overwrites the diagonal with that of `D`; returns the off-diagonal entries of the 2x2 pivots, each at the first
+/// index of its pivot.
 fn factorise(a: &mut DMatrix<f64>) -> Few<f64> {
     let size = a.nrows();
     let mut params = Spec::<LbltParams, f64>::default();
-    // By the library's partial pivoting a 2x2 pivot may be singular. Blocks of columns make an entry twice, and the search
-    // could go around in a circle where the two differ by rounding.
+    // With the library's partial pivoting a 2x2 pivot may be singular. With blocks of columns an entry is computed
+    // twice, and the pivot search could cycle where the two values differ by rounding.
     (params.pivoting, params.block_size) = (PivotingStrategy::Rook, 1);
     let mut beside = Few::from_elem(0.0, size);
     let (mut order, mut place_of) = (Few::from_elem(0_usize, size), Few::from_elem(0_usize, size));
@@ -93,7 +96,7 @@ fn factorise(a: &mut DMatrix<f64>) -> Few<f64> {
 mod tests {
     use super::*;
 
-    /// Entries that look random, the same each time.
+    /// Reproducible pseudo-random entries.
     fn pseudo_random(seed: &mut u64) -> f64 {
         *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (*seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
@@ -107,7 +110,7 @@ mod tests {
                 let mut a = DMatrix::from_fn(size, size, |_, _| pseudo_random(&mut seed));
                 a = &a + a.transpose();
                 for k in 0..size {
-                    // Zeros on the diagonal ask for 2x2 pivots.
+                    // Zeros on the diagonal require 2x2 pivots.
                     a[(k, k)] = if shift == 0.0 { 0.0 } else { a[(k, k)] + shift };
                 }
                 let values = a.symmetric_eigenvalues();
@@ -127,8 +130,8 @@ mod tests {
         assert_eq!(inertia(DMatrix::zeros(0, 0), 1e-14), Some(Inertia::default()));
     }
 
-    /// Here the first row's largest entry makes a 2x2 pivot with nothing for its determinant, and a pivot of its own is small
-    /// beside the third row.
+    /// The 2x2 pivot on the largest entry of the first row has a determinant of zero or nearly so, and a 1x1 pivot is
+    /// small compared with the third row.
     #[test]
     fn a_small_pivot_beside_a_large_row_is_passed_over() {
         for (first, large) in [(0.5, 100.0), (0.6, 1e10), (0.0, 1e12)] {

@@ -1,21 +1,21 @@
-//! Dense LU factorisations with partial pivoting of many equations, column after column, with a look at whether the solve
-//! goes on before each.
+//! Dense LU factorisation with partial pivoting of large matrices, column by column, with a budget check before each
+//! column.
 
 use crate::algebra::dense::lu_factors::DenseFactors;
 use crate::resources::budget::{self, Taken};
 use nalgebra::{DMatrix, DVector};
 
-/// `P A = L U` in place of `A`, the diagonal of `L` being one.
+/// The factorisation `P A = L U`, stored in place of `A`; `L` has a unit diagonal.
 pub(crate) struct LargeLu {
     factors: DMatrix<f64>,
-    /// The row with which each one was exchanged.
+    /// The row exchanged with each row.
     exchanges: Vec<usize>,
     row_scales: DVector<f64>,
     _held: Taken,
 }
 
 impl LargeLu {
-    /// Of a matrix whose rows were divided by these sizes.
+    /// Factorises a matrix whose rows were divided by `row_scales`.
     pub fn new(mut matrix: DMatrix<f64>, row_scales: DVector<f64>) -> Self {
         let size = matrix.nrows();
         let held = budget::take::<f64>(size * size);
@@ -60,7 +60,7 @@ impl LargeLu {
         if exchanged % 2 == 1 { -1.0 } else { 1.0 }
     }
 
-    /// Of `U`.
+    /// The pivots: the diagonal of `U`.
     pub fn pivots(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
         (0..self.factors.nrows()).map(|index| self.factors[(index, index)])
     }

@@ -1,8 +1,8 @@
-//! What dense factors are asked for, whatever they are kept in.
+//! The interface of dense factors, whatever their storage.
 
 use nalgebra::DVector;
 
-/// The factors of a matrix of any size, known to the compiler or not.
+/// The factors of a matrix, of a size known at compile time or not.
 pub(crate) trait DenseFactors: Send + Sync {
     /// Number of rows.
     fn size(&self) -> usize;

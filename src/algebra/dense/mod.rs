@@ -1,4 +1,4 @@
-//! Dense matrices: their factorisations and inertia, what is assembled into, counts of solves, and roots of functions.
+//! Dense matrices: factorisations, inertia, assembly, and counters of solves.
 
 pub(crate) mod assembly;
 pub(crate) mod factorisation;

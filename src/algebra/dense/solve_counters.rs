@@ -1,5 +1,5 @@
-//! How many right-hand sides this thread has solved for, and how many systems it has factorised: what a test asks that is to
-//! fail where the work grows, and what diagnostics say of a search. No point of a path depends on it.
+//! Counters of the right-hand sides solved for and of the systems factorised by this thread, for tests of the amount of
+//! work and for diagnostics of a search. No point of a path depends on them.
 
 use std::cell::Cell;
 
@@ -8,7 +8,7 @@ thread_local! {
     static FACTORISATIONS: Cell<u64> = const { Cell::new(0) };
 }
 
-/// Sparse systems factorised on this thread since it began, counts of eigenvalues included, whoever asked for them.
+/// The number of sparse systems factorised on this thread since it started, inertia counts included.
 pub fn factorisations() -> u64 {
     FACTORISATIONS.get()
 }
@@ -17,7 +17,8 @@ pub(crate) fn count_factorisation() {
     FACTORISATIONS.set(FACTORISATIONS.get() + 1);
 }
 
-/// Right-hand sides solved for on this thread since it began, refinements included, by dense and sparse factorisations.
+/// The number of right-hand sides solved for on this thread since it started, by dense and sparse factorisations,
+/// refinements included.
 pub fn solves() -> u64 {
     SOLVES.get()
 }

@@ -1,15 +1,18 @@
-//! A bordered system taken apart: nodes that borders hold, a factorised interior, and what is left of the borders.
+//! Block elimination of a bordered system: nodes constrained by borders, a factorised interior, and the remaining
+//! borders.
 //!
-//! With the held unknowns `H` eliminated at their nodes (`nodal_elimination`) and `T` the rest, of `[[K, B], [C, D]]` there remains
+//! With the constrained unknowns `H` eliminated at their nodes (`nodal_elimination`) and `T` the other unknowns,
+//! `[[K, B], [C, D]]` reduces to
 //!
 //! ```text
 //! [[K_TT, B_T + K_TH S], [C_T, D + C_H S]],      S = -M⁻¹ d
 //! ```
 //!
-//! with the motions `S` of the held unknowns by the borders that are kept; reactions that are kept (`Friction::Bordered`)
-//! have the equilibrium along `H` for their rows. Its solution by the complement `D - C K⁻¹ B` is `border_schur` (mixed block
-//! elimination: W. Govaerts, J. D. Pryce, IMA J. Numer. Anal. 13 (1993) 161, doi:10.1093/imanum/13.2.161). Another border
-//! row changes a row of the complement and nothing else.
+//! where `S` contains the motions of the constrained unknowns per unit value of each retained border; retained
+//! reactions (`Friction::Bordered`) have the equilibrium along `H` as their rows. `border_schur` solves the reduced
+//! system by the complement `D - C K⁻¹ B` (mixed block elimination: W. Govaerts, J. D. Pryce, IMA J. Numer. Anal. 13
+//! (1993) 161, doi:10.1093/imanum/13.2.161). A change of one border row changes one row of the complement and nothing
+//! else.
 
 use crate::algebra::dense::solve_counters::count_solves;
 use crate::algebra::sparse::border_schur::{BorderSchurComplement, Factor};
@@ -21,47 +24,48 @@ use crate::algebra::sparse::nodal_elimination::{Coupling, Elimination, Friction,
 use nalgebra::DMatrix;
 use smallvec::SmallVec;
 
-/// The system taken apart.
+/// The system after block elimination.
 pub(super) struct Blocks {
     elimination: Elimination,
     pub reduced: BorderSchurComplement,
     unknowns: usize,
-    /// Borders of the matrix asked for, and those added for what is not symmetric.
+    /// Number of borders: those of the given matrix and those added for unsymmetric entries.
     borders: usize,
     kept_columns: Vec<usize>,
     kept_rows: Vec<ReducedRow>,
-    /// For each kept column: motions of held unknowns by it, and its entries in held equations.
+    /// For each retained column: the motions of constrained unknowns it causes, and its entries in constrained
+    /// equations.
     shifts: Vec<SparseEntries>,
     held_parts: Vec<SparseEntries>,
-    /// Sign of the determinant, that of the reduced system apart.
+    /// Sign of the determinant without the factor of the reduced system.
     sign: f64,
 }
 
 /// A row of the reduced system.
 enum ReducedRow {
-    /// A border row, with its entries at held unknowns.
+    /// A border row, with its entries at constrained unknowns.
     Border(usize, SparseEntries),
-    /// The equilibrium along a held unknown.
+    /// The equilibrium along a constrained unknown.
     Equilibrium(usize),
 }
 
-/// What a right-hand side leaves at the nodes that are eliminated.
+/// The part of a right-hand side at the eliminated nodes.
 struct AtNodes {
-    /// Forces, of each unknown.
+    /// The force at each unknown.
     force: Vec<f64>,
-    /// Motions of held unknowns.
+    /// The motions of the constrained unknowns.
     held: Vec<f64>,
 }
 
-/// What becomes of a border row where nodes are eliminated.
+/// A border row after the elimination of nodes.
 struct BorderRow {
     free: SparseEntries,
     held: SparseEntries,
-    /// Its entries in the kept columns.
+    /// Entries in the retained columns.
     corner: Vec<f64>,
 }
 
-/// Borders that remain after elimination beyond which LU of the whole is cheaper.
+/// Number of remaining borders beyond which LU of the whole matrix is cheaper.
 const MOST_BORDERS: usize = 400;
 
 impl Blocks {
@@ -73,7 +77,8 @@ impl Blocks {
         let (elimination, values) = Elimination::new(matrix, holdings, friction);
         let mut sign = if (borders - given) % 2 == 1 { -1.0 } else { 1.0 };
         let mut is_kept = vec![true; borders];
-        // Of each row the held unknown whose equilibrium takes its place; none where that is eliminated, too.
+        // For each row, the constrained unknown whose equilibrium replaces the row; `Some(None)` where the equilibrium
+        // is eliminated, too.
         let mut equilibrium: Vec<Option<Option<usize>>> = vec![None; borders];
         for node in elimination.nodes() {
             sign *= node.sign();
@@ -131,8 +136,8 @@ impl Blocks {
         Some(Self { elimination, reduced, unknowns, borders, kept_columns, kept_rows, shifts, held_parts, sign })
     }
 
-    /// The same with other entries in a border row that holds nothing, to the last bit; `None` where that takes more than
-    /// was kept.
+    /// Replaces the entries of a border row that constrains no node, equal to a new elimination to the last bit; `None`
+    /// where this requires data that were not stored.
     pub fn with_row(mut self, row: usize, entries: &SparseEntries) -> Option<Self> {
         let is_it = |kept: &ReducedRow| matches!(kept, ReducedRow::Border(own, _) if *own == row);
         let place = self.kept_rows.iter().position(is_it)?;
@@ -147,7 +152,7 @@ impl Blocks {
         self.sign * self.reduced.sign()
     }
 
-    /// Solves for so many right-hand sides one after the other, overwritten by the solutions.
+    /// Solves for `count` consecutive right-hand sides, overwritten by the solutions.
     pub fn solve(&self, values: &mut [f64], count: usize) -> bool {
         count_solves(count);
         let size = values.len() / count.max(1);
@@ -168,7 +173,7 @@ impl Blocks {
         true
     }
 
-    /// A right-hand side of the reduced system, which is appended, in its two parts; and what it leaves at the nodes.
+    /// Appends the two parts of a right-hand side of the reduced system; returns its part at the eliminated nodes.
     fn without_nodes(&self, values: &[f64], motions: &mut Vec<f64>, weights: &mut Vec<f64>) -> AtNodes {
         let (upper, lower) = values.split_at(self.unknowns);
         let mut force = upper.to_vec();
@@ -187,7 +192,7 @@ impl Blocks {
         let right = |row: &ReducedRow| match row {
             ReducedRow::Equilibrium(unknown) => force[*unknown],
             ReducedRow::Border(row, entries) => {
-                // Rows added for what is not symmetric have nothing on the right.
+                // Rows added for unsymmetric entries have a zero right-hand side.
                 let given = lower.get(*row).copied().unwrap_or(0.0);
                 given - entries.iter().map(|(unknown, value)| value * held[*unknown]).sum::<f64>()
             }
@@ -199,7 +204,7 @@ impl Blocks {
         AtNodes { force, held }
     }
 
-    /// The solution from that of the reduced system.
+    /// The solution of the whole system from the solution of the reduced system.
     fn with_nodes(&self, motion: &mut [f64], weights: &[f64], at_nodes: AtNodes, values: &mut [f64]) {
         let AtNodes { mut force, mut held } = at_nodes;
         let (upper, lower) = values.split_at_mut(self.unknowns);
@@ -213,7 +218,7 @@ impl Blocks {
         }
         for node in self.elimination.nodes() {
             for (index, unknown) in node.held().enumerate() {
-                // `motion` is zero at held unknowns: their part is in `force`.
+                // `motion` is zero at constrained unknowns: their contribution is in `force`.
                 let equilibrium = self.elimination.equilibrium(node, index);
                 force[unknown] -= equilibrium.iter().map(|(row, value)| value * motion[*row]).sum::<f64>();
             }
@@ -232,7 +237,7 @@ impl Blocks {
     }
 }
 
-/// For each kept column the motions of held unknowns by it.
+/// For each retained column, the motions of the constrained unknowns it causes.
 fn shifts_of_held(elimination: &Elimination, kept_columns: &[usize]) -> Option<Vec<SparseEntries>> {
     let mut shifts = vec![SparseEntries::new(); kept_columns.len()];
     for Coupling { node, row, border, value } in elimination.couplings() {
@@ -244,7 +249,7 @@ fn shifts_of_held(elimination: &Elimination, kept_columns: &[usize]) -> Option<V
     Some(shifts)
 }
 
-/// The kept columns of the borders: their entries in the other equations and those in held ones.
+/// The retained columns of the borders: their entries in free equations and in constrained equations.
 fn columns_of_rest(
     elimination: &Elimination,
     right: &[SparseEntries],
@@ -266,7 +271,7 @@ fn columns_of_rest(
     Some((columns, held_parts))
 }
 
-/// A border row over what is left of the unknowns and over the kept columns.
+/// A border row in the remaining unknowns and the retained columns.
 fn border_row(
     elimination: &Elimination,
     entries: &SparseEntries,

@@ -1,4 +1,4 @@
-//! Block elimination of what is left of the borders.
+//! Block elimination of the remaining borders.
 
 use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;
@@ -27,7 +27,8 @@ impl Factor {
         }
     }
 
-    /// Smallest pivot over the largest one; those of the symmetric factors are between [`crate::algebra::sparse::factors::ldl::SMALL`] and 1.
+    /// Ratio of the smallest to the largest pivot magnitude; 1 for symmetric factors, whose pivots are between
+    /// [`crate::algebra::sparse::factors::ldl::SMALL`] and 1.
     pub fn pivot_ratio(&self) -> f64 {
         match self {
             Self::Symmetric(_) => 1.0,
@@ -45,30 +46,31 @@ impl Factor {
     }
 }
 
-/// `[[K, B], [C, D]]` with `K` factorised, and the raises of its pivots as borders more.
+/// The factorisation of `[[K, B], [C, D]]`: factors of `K`, whose pivot increments become additional borders, and the
+/// complement.
 pub(super) struct BorderSchurComplement {
     pub factor: Factor,
     size: usize,
     columns: Vec<SparseEntries>,
     rows: Vec<SparseEntries>,
-    /// `D`, without what raises add.
+    /// `D`, without the borders of the increments.
     corner: DMatrix<f64>,
     complement: Complement,
-    /// `K⁻¹ B`, where it is small enough to be kept.
+    /// `K⁻¹ B`, where small enough to be stored.
     responses: Option<Vec<f64>>,
     given: usize,
 }
 
-/// `D - C K⁻¹ B`, each row divided by the size of its terms, and factorised.
+/// The factorised complement `D - C K⁻¹ B`, each row divided by the magnitude of its terms.
 struct Complement {
     scales: Vec<f64>,
     factors: LU<f64, Dyn, Dyn>,
     sign: f64,
-    /// Smallest pivot, the terms being about 1.
+    /// The smallest pivot magnitude, with terms of about 1.
     pivot_ratio: f64,
 }
 
-/// The same as its terms are added up.
+/// The complement during assembly: the sums of its terms and of their magnitudes.
 struct Terms {
     sums: DMatrix<f64>,
     sizes: DMatrix<f64>,
@@ -83,7 +85,7 @@ impl Terms {
         Self { sizes: sums.abs(), sums }
     }
 
-    /// Takes `C` times a column of `K⁻¹ B` from a column.
+    /// Subtracts `C` times a column of `K⁻¹ B` from a column.
     fn take(&mut self, rows: &[SparseEntries], column: usize, response: &[f64]) {
         for (row, entries) in rows.iter().enumerate() {
             for (unknown, value) in entries {
@@ -110,15 +112,15 @@ impl Terms {
     }
 }
 
-/// Right-hand sides that are solved for together.
+/// Number of right-hand sides solved for together.
 const TOGETHER: usize = 32;
-/// Rows that are looked at together: so many of some columns stay at hand.
+/// Number of rows processed together: this many rows of a few columns stay in cache.
 const ROWS_TOGETHER: usize = 512;
-/// Numbers of `K⁻¹ B` that are kept.
+/// Largest number of entries of `K⁻¹ B` that are stored.
 const KEPT: usize = 4_000_000;
 
 impl BorderSchurComplement {
-    /// `None` where memory does not suffice or a number is not finite.
+    /// Forms the complement and factorises it; `None` where memory runs out or a number is not finite.
     pub fn new(
         factor: Factor,
         size: usize,
@@ -153,7 +155,7 @@ impl BorderSchurComplement {
         Some(Self { factor, size, columns, rows, corner, complement, responses, given })
     }
 
-    /// The same with another row of `[C, D]`; `None` where `K⁻¹ B` is not kept.
+    /// Replaces a row of `[C, D]`; `None` where `K⁻¹ B` is not stored.
     pub fn with_row(mut self, row: usize, entries: SparseEntries, corner: &[f64]) -> Option<Self> {
         *self.rows.get_mut(row)? = entries;
         corner.iter().enumerate().for_each(|(column, value)| self.corner[(row, column)] = *value);
@@ -171,12 +173,12 @@ impl BorderSchurComplement {
         raises * self.factor.determinant_sign() * self.complement.sign
     }
 
-    /// Smallest pivot of the complement of the borders, its terms being about 1.
+    /// The smallest pivot magnitude of the complement of the borders, with terms of about 1.
     pub fn pivot_ratio(&self) -> f64 {
         self.complement.pivot_ratio
     }
 
-    /// Solves for so many right-hand sides one after the other, overwriting both parts of them.
+    /// Solves for `count` consecutive right-hand sides, overwriting both parts of each.
     pub fn solve(&self, upper: &mut [f64], lower: &mut [f64], count: usize) -> bool {
         let mut right = self.responses.is_none().then(|| upper.to_vec());
         if !self.factor.solve(upper, count) {
@@ -214,7 +216,8 @@ impl BorderSchurComplement {
         self.factor.solve(upper, count)
     }
 
-    /// Takes `K⁻¹ B` times its weights from each solution. Some rows at a time: what is read of `K⁻¹ B` serves them all.
+    /// Subtracts `K⁻¹ B` times the weights from each solution, a few rows at a time: each part of `K⁻¹ B`, once read,
+    /// serves all solutions.
     fn take_responses(&self, responses: &[f64], weights: &DMatrix<f64>, upper: &mut [f64]) {
         let size = self.size.max(1);
         for first in (0..self.size).step_by(ROWS_TOGETHER) {

@@ -1,10 +1,11 @@
-//! A factorisation of the whole bordered system that says when it cannot be trusted.
+//! A factorisation of the whole bordered system that reports when it is unreliable.
 //!
-//! Block elimination with a symmetric matrix that may be near singular loses digits in it; here its small pivots are
-//! raised and the raises are borders, so that it does not, and iterative refinement on the whole mends the rest (after W.
-//! Govaerts, J. D. Pryce, IMA J. Numer. Anal. 13 (1993) 161, doi:10.1093/imanum/13.2.161: mixed block elimination). A
-//! solution is accepted by its backward error (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405, doi:10.1007/BF01386090);
-//! where that fails, a sparse LU factorisation of the whole takes over.
+//! Block elimination with a symmetric matrix that may be near singular loses digits. Here the small pivots of this
+//! matrix are raised and the increments become borders, so that the digits are kept; iterative refinement on the whole
+//! system removes the remaining error (after W. Govaerts, J. D. Pryce, IMA J. Numer. Anal. 13 (1993) 161,
+//! doi:10.1093/imanum/13.2.161: mixed block elimination). A solution is accepted by its backward error (W. Oettli, W.
+//! Prager, Numer. Math. 6 (1964) 405, doi:10.1007/BF01386090); where block elimination fails this test, a sparse LU
+//! factorisation of the whole matrix takes over.
 
 use crate::algebra::Inertia;
 use crate::algebra::dense::assembly::Sink;
@@ -18,11 +19,11 @@ use crate::algebra::sparse::nodal_elimination::{Elimination, Friction, Holdings}
 use nalgebra::DVector;
 use std::sync::{Arc, OnceLock};
 
-/// See the module.
+/// The factorisation of a bordered system; see the module.
 pub struct SparseFactorisation {
     matrix: Bordered,
     blocks: Option<Blocks>,
-    /// Made when first needed.
+    /// Computed when first needed.
     whole: OnceLock<Option<WholeLu>>,
     sign: f64,
     pivot_ratio: f64,
@@ -32,15 +33,15 @@ pub struct SparseFactorisation {
 const GOOD: f64 = 1e-15;
 /// Backward error up to which a solution is accepted.
 const ACCEPTED: f64 = 1e-11;
-/// Pivots of the complement above this speak for a regular matrix.
+/// Pivot ratio of the complement above which the matrix counts as regular.
 const CERTAIN: f64 = 1e-6;
-/// Error of a solution of size 1 that is known, from which a matrix counts as singular.
+/// Error of a known solution of magnitude 1 from which the matrix counts as singular.
 const SINGULAR: f64 = 1e-3;
-/// Refinements of one solution.
+/// Largest number of refinements of one solution.
 const MOST_REFINEMENTS: usize = 6;
 
 impl SparseFactorisation {
-    /// Factorises; `None` when the matrix is singular to working precision or holds a number that is not finite.
+    /// Factorises; `None` when the matrix is singular to working precision or has an entry that is not finite.
     pub fn new(matrix: Bordered, holdings: &Holdings) -> Option<Self> {
         let friction = friction_of(&matrix, holdings);
         Self::with(matrix, holdings, friction)
@@ -51,7 +52,7 @@ impl SparseFactorisation {
             return None;
         }
         count_factorisation();
-        // A complement that is nothing but rounding says nothing.
+        // A complement of pure round-off carries no information.
         let blocks =
             Blocks::new(&matrix, holdings, friction).filter(|blocks| blocks.reduced.pivot_ratio() > f64::EPSILON);
         let (sign, pivot_ratio) =
@@ -60,8 +61,9 @@ impl SparseFactorisation {
         (pivot_ratio > CERTAIN || factorisation.finds_what_is_known()).then_some(factorisation)
     }
 
-    /// The factorisation of the matrix with another last row, which `put_last` adds up, to the last bit: what does not
-    /// depend on that row serves on. `None` where a matrix as that is has to be factorised anew to be trusted.
+    /// The factorisation of the matrix with another last row, which `put_last` assembles, equal to a new factorisation
+    /// to the last bit: all data independent of this row are reused. `None` where a reliable result requires a new
+    /// factorisation.
     pub fn with_last_row(mut self, put_last: impl FnOnce(&mut dyn Sink)) -> Option<Self> {
         let last = self.matrix.lower.len().checked_sub(1)?;
         self.matrix.lower[last].clear();
@@ -76,7 +78,7 @@ impl SparseFactorisation {
         (self.pivot_ratio > CERTAIN).then_some(self)
     }
 
-    /// Whether solutions that are known come out: near a singular matrix they do not, however small the residual.
+    /// Whether known solutions are recovered: near a singular matrix they are not, however small the residual.
     fn finds_what_is_known(&self) -> bool {
         let first = |row: usize| 1.0 + (row % 7) as f64 / 8.0;
         let second = |row: usize| if row % 3 == 1 { -1.0 } else { 1.0 - (row % 11) as f64 / 16.0 };
@@ -89,7 +91,7 @@ impl SparseFactorisation {
         comes_out(&first) && comes_out(&second)
     }
 
-    /// Rows of the matrix.
+    /// Number of rows of the matrix.
     pub fn size(&self) -> usize {
         self.matrix.size()
     }
@@ -99,13 +101,14 @@ impl SparseFactorisation {
         self.sign
     }
 
-    /// Smallest pivot of the complement of the borders over the size of its terms; 0 where that was not formed.
+    /// Smallest pivot of the complement of the borders over the magnitude of its terms; 0 where no complement was
+    /// formed.
     pub fn pivot_ratio(&self) -> f64 {
         self.pivot_ratio
     }
 
-    /// How far pivots are from each other at the most, those of the complement with them: where this is small, stiff and
-    /// soft parts may have been added up.
+    /// The smaller of the pivot ratios of the interior and of the border complement: where it is small, stiffnesses of
+    /// very different magnitude may have been added.
     pub fn spread(&self) -> f64 {
         self.blocks.as_ref().map_or(0.0, |blocks| blocks.reduced.pivot_ratio().min(blocks.reduced.factor.pivot_ratio()))
     }
@@ -134,7 +137,7 @@ impl SparseFactorisation {
         self.solve_all_once(values.as_mut_slice(), 1)
     }
 
-    /// The same for so many right-hand sides one after the other.
+    /// Solves without refinement for `count` consecutive right-hand sides.
     pub fn solve_all_once(&self, values: &mut [f64], count: usize) -> bool {
         self.blocks.as_ref().is_some_and(|blocks| blocks.solve(values, count))
     }
@@ -172,7 +175,7 @@ impl SparseFactorisation {
     }
 }
 
-/// The largest residual over the sizes of its terms.
+/// The largest residual relative to the magnitude of its terms.
 pub(super) fn backward_error(rest: &[f64], right: &[f64], sizes: &[f64]) -> f64 {
     let largest = sizes.iter().fold(0.0_f64, |largest, size| largest.max(*size));
     let mut error = 0.0_f64;
@@ -180,7 +183,7 @@ pub(super) fn backward_error(rest: &[f64], right: &[f64], sizes: &[f64]) -> f64 
         if !rest.is_finite() {
             return f64::INFINITY;
         }
-        // A row whose terms are all but nothing is judged by the others.
+        // A row with negligible terms is measured against the largest terms of the other rows.
         let terms = (size + right.abs()).max(f64::EPSILON * largest);
         if terms > 0.0 {
             error = error.max(rest.abs() / terms);
@@ -189,12 +192,14 @@ pub(super) fn backward_error(rest: &[f64], right: &[f64], sizes: &[f64]) -> f64 
     error
 }
 
-/// Multiplications that a factorisation without symmetry may take where nothing speaks against it.
+/// Multiplications that an unsymmetric factorisation may take in any case.
 const LITTLE: u64 = 1_000_000;
-/// A multiplication in it takes so many times one of the symmetric factorisation and its solves, which go by blocks.
+/// Cost of one multiplication of the unsymmetric factorisation, in multiplications of the symmetric factorisation and
+/// its solves, which work by blocks.
 const SLOWER: u64 = 4;
 
-/// What is cheaper: borders for what is not symmetric, a solve each, or a factorisation without symmetry.
+/// The cheaper treatment of friction: borders for the unsymmetric terms, with one solve each, or an unsymmetric
+/// factorisation.
 fn friction_of(matrix: &Bordered, holdings: &Holdings) -> Friction {
     let pattern = &matrix.pattern;
     let entries = pattern.factor_entries() as u64;
@@ -204,14 +209,15 @@ fn friction_of(matrix: &Bordered, holdings: &Holdings) -> Friction {
     };
     let pairs = holdings.iter().flat_map(|holding| holding.rows.iter().zip(&holding.columns));
     let solves = pairs.filter(rubs).count() as u64;
-    // The work is at least the entries squared over the unknowns: it need not be counted where that is already too much.
+    // The work is at least the squared number of entries over the number of unknowns: where this bound is too large
+    // already, the work need not be counted.
     let least = entries.saturating_mul(entries) / (pattern.size() as u64).max(1);
     let most = LITTLE.max(entries.saturating_mul(2 * solves) / SLOWER);
     if least <= most && pattern.fill().work <= most { Friction::Folded } else { Friction::Bordered }
 }
 
-/// Numbers of eigenvalues by sign of `Zᵀ K Z`, `Z` the motions that the holdings allow. `None` where the count is not
-/// possible: `K` is not symmetric, or a holding could not be eliminated.
+/// The inertia of `Zᵀ K Z`, with the columns of `Z` spanning the motions that the holdings allow. `None` where it
+/// cannot be determined: `K` is not symmetric, or a holding could not be eliminated.
 pub fn held_inertia(matrix: &Bordered, holdings: &Holdings, tolerance: f64) -> Option<Inertia> {
     if matrix.is_outside || matrix.symmetrised().lower.len() != matrix.lower.len() {
         return None;

@@ -1,4 +1,4 @@
-//! Sparse LU factorisation of the whole, where block elimination loses too many digits or has too many borders.
+//! Sparse LU factorisation of the whole matrix, where block elimination loses too many digits or has too many borders.
 
 use crate::algebra::sparse::factors::bordered_matrix::Bordered;
 use crate::algebra::sparse::factors::pivoted_lu::GeneralLu;
@@ -7,7 +7,7 @@ use faer::sparse::Triplet;
 pub(super) struct WholeLu(GeneralLu);
 
 impl WholeLu {
-    /// `None` where it fails; a singular matrix may pass, and shows in the residual.
+    /// Factorises; `None` where the factorisation fails. A singular matrix may pass and shows in the residual.
     pub fn new(matrix: &Bordered) -> Option<Self> {
         let n = matrix.pattern.size();
         let mut entries = Vec::with_capacity(matrix.values.len());

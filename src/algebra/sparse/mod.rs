@@ -1,14 +1,15 @@
-//! Sparse systems with thin borders, `[[K, B], [C, D]]`, `K` symmetric but for friction: as the path's equations are for many unknowns.
+//! Sparse systems with narrow borders, `[[K, B], [C, D]]`, `K` symmetric except for friction: the form of the path's
+//! equations with many unknowns.
 //!
-//! | room or file | what it does |
+//! | folder or file | what it does |
 //! |---|---|
-//! | [`constrained_nodes`] | which border rows hold a node (closed contacts), and the matrices of one node that is held |
-//! | [`factors`] | the matrix as it is assembled, where it may have entries, and its factorisations |
-//! | `nodal_elimination` | unknowns of a node that border rows hold are eliminated where they are |
-//! | `border_schur` | the dense Schur complement of what remains of the borders |
-//! | `block_elimination` | both together, the interior factorised, refined on the whole system |
+//! | [`constrained_nodes`] | border rows that constrain nodes (closed contacts), and the matrices of one such node |
+//! | [`factors`] | the assembled matrix, its sparsity pattern and its factorisations |
+//! | `nodal_elimination` | elimination of constrained unknowns at their nodes |
+//! | `border_schur` | the dense Schur complement of the remaining borders |
+//! | `block_elimination` | both eliminations combined, with the factorised interior |
 //! | `fallback_lu` | LU of the whole matrix, where block elimination fails |
-//! | [`factorisation`] | the one of these that serves |
+//! | [`factorisation`] | the choice between block elimination and LU, with iterative refinement on the whole system |
 //! | `preconditioned_refinement` | solutions with the factorisation of a nearby matrix |
 
 pub(crate) mod block_elimination;

@@ -1,32 +1,35 @@
-//! Solutions with the factorisation of a nearby matrix: cheaper than one of the matrix itself.
+//! Solutions with the factorisation of a nearby matrix, cheaper than a factorisation of the matrix itself.
 //!
-//! With `F` the matrix that was factorised and `A` the one asked for, `x ← x + F⁻¹ (b - A x)` converges as the powers of
-//! `G = F⁻¹ A - I` fall. Where it begins at a vector with a part in every direction, its first contraction tells of all
-//! of `G`: where that is small no eigenvalue changes sign between the two, and the determinants have one sign.
+//! With `F` the factorised matrix and `A` the matrix of the system, `x ← x + F⁻¹ (b - A x)` converges like the powers
+//! of `G = F⁻¹ A - I`. From an initial vector with components in every direction, the first contraction measures the
+//! whole of `G`: where it is small, no eigenvalue changes sign between the two matrices, and their determinants have
+//! the same sign.
 
 use crate::algebra::sparse::factorisation::{SparseFactorisation, backward_error};
 use crate::algebra::sparse::factors::bordered_matrix::Bordered;
 use nalgebra::DVector;
 
-/// The first contraction may be this.
+/// Largest first contraction at which two matrices count as near.
 const NEAR: f64 = 1e-3;
 /// Backward error at which a solution is as good as rounding allows.
 const GOOD: f64 = 1e-15;
-/// Backward error up to which a solution is accepted that gets no better.
+/// Backward error up to which a solution that improves no further is accepted.
 const ACCEPTED: f64 = 1e-14;
-/// Part of an accepted backward error up to which the next one, falling as the last did, need not be looked at.
+/// Fraction of the accepted backward error below which the next error, extrapolated from the last contraction, need not
+/// be computed.
 const CERTAIN: f64 = 1e-3;
-/// Corrections of one solution.
+/// Largest number of corrections of one solution.
 const MOST_CORRECTIONS: usize = 8;
 
-/// A matrix whose last row is that of the factorised one.
+/// A matrix near a factorised matrix, with the last row of the factorised matrix.
 pub struct Nearby<'a> {
     factorisation: &'a SparseFactorisation,
     matrix: Bordered,
 }
 
 impl<'a> Nearby<'a> {
-    /// Another matrix with the last row of the factorised one in place of its own; `None` where it has other unknowns.
+    /// Replaces the last row of `matrix` by that of the factorised matrix; `None` where the patterns or the numbers of
+    /// borders differ.
     pub fn new(factorisation: &'a SparseFactorisation, mut matrix: Bordered) -> Option<Self> {
         if matrix.is_outside || !factorisation.is_like(&matrix) {
             return None;
@@ -35,8 +38,8 @@ impl<'a> Nearby<'a> {
         Some(Self { factorisation, matrix })
     }
 
-    /// The solutions for right-hand sides one after the other, with backward errors up to this one; `None` where the matrix
-    /// is not near enough.
+    /// Returns the solutions for consecutive right-hand sides, with backward errors up to `accepted`; `None` where the
+    /// matrix is not near enough.
     pub fn solve_all(&self, right_hand_sides: &[f64], accepted: f64) -> Option<Vec<f64>> {
         let (size, count) = (self.matrix.size(), right_hand_sides.len() / self.matrix.size());
         let mut solutions = right_hand_sides.to_vec();
@@ -47,7 +50,7 @@ impl<'a> Nearby<'a> {
         let (mut rest, mut sizes) = (vec![0.0; solutions.len()], vec![0.0; solutions.len()]);
         let mut before = f64::INFINITY;
         for round in 0..MOST_CORRECTIONS {
-            // The sizes of the terms hardly change from one solution to the next.
+            // The magnitudes of the terms hardly change from one solution to the next.
             match round {
                 0 => self.matrix.multiply_all::<true>(&solutions, &mut rest, &mut sizes),
                 _ => self.matrix.multiply_all::<false>(&solutions, &mut rest, &mut sizes),
@@ -78,14 +81,15 @@ impl<'a> Nearby<'a> {
         None
     }
 
-    /// The largest unknown of each of some vectors, borders apart.
+    /// The largest magnitude of the unknowns of each vector, without the borders.
     fn sizes(&self, vectors: &[f64]) -> Vec<f64> {
         let unknowns = self.matrix.pattern.size();
         let of_vector = |vector: &[f64]| vector[..unknowns].iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         vectors.chunks_exact(self.matrix.size()).map(of_vector).collect()
     }
 
-    /// The solution, as good as rounding allows; where there is one, both determinants have one sign.
+    /// Returns the solution, as accurate as rounding allows; the determinants of the two matrices then have the same
+    /// sign. `None` where the matrix is not near enough.
     pub fn solve(&self, right_hand_side: &DVector<f64>) -> Option<DVector<f64>> {
         let size = right_hand_side.len();
         let mut solution = DVector::from_fn(size, |row, _| {
@@ -104,7 +108,7 @@ impl<'a> Nearby<'a> {
             if !self.factorisation.solve_once(&mut correction) {
                 return None;
             }
-            // What is left of borders follows from the unknowns, and is of another size.
+            // The border values follow from the unknowns and have a different magnitude.
             let change = correction.rows(0, self.matrix.pattern.size()).amax();
             match round {
                 0 => first = change,

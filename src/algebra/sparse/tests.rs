@@ -1,4 +1,4 @@
-//! The sparse factorisation against the dense one, on systems that look random, the same each time.
+//! The sparse factorisation against the dense factorisation, on reproducible pseudo-random systems.
 
 use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::factors::entries::SparseEntries;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 struct Random(u64);
 
 impl Random {
-    /// Between -1 and 1.
+    /// A number between -1 and 1.
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
@@ -24,20 +24,20 @@ impl Random {
     }
 }
 
-/// What the systems have besides a chain of nodes with cross links.
+/// Features of the systems in addition to a chain of nodes with cross links.
 #[derive(Clone, Copy, Default)]
 struct Kind {
     contacts: bool,
     friction: bool,
     /// Obstacles move with the load.
     moved: bool,
-    /// Reactions turn with the place under friction.
+    /// Under friction, reactions change direction with the position.
     unsymmetric: bool,
-    /// The matrix of one node is nothing: only a contact holds it.
+    /// The stiffness of one node is zero: only a contact constrains the node.
     loose: bool,
-    /// The smallest eigenvalue is moved to zero.
+    /// The smallest eigenvalue is shifted to zero.
     limit: bool,
-    /// A border row that is no contact's has a diagonal entry.
+    /// A border row that belongs to no contact has a diagonal entry.
     track: bool,
 }
 
@@ -75,7 +75,7 @@ fn system(random: &mut Random, dimension: usize, nodes: usize, kind: Kind) -> Sy
     let held: Vec<usize> =
         if kind.contacts { (0..nodes).filter(|node| node % 4 == 1 || Some(*node) == loose).collect() } else { vec![] };
     if kind.limit {
-        // Taken from entries on the diagonal of one node: the pattern stays, the determinant vanishes.
+        // Subtracted from a diagonal entry of one node: the pattern remains, the determinant vanishes.
         let own = n - 1;
         let mut rest = stiffness.clone();
         rest[(own, own)] = 0.0;
@@ -210,7 +210,7 @@ fn eigenvalues_of_what_is_held_are_counted() {
     assert!(negatives > 20);
 }
 
-/// A matrix with many eigenvalues zero: raised, and counted as they are.
+/// A matrix with many zero eigenvalues: its pivots are raised, and the eigenvalues counted are its own.
 #[test]
 fn zero_eigenvalues_are_raised_and_counted() {
     let pattern = Arc::new(Pattern::new(6, (0..6).flat_map(|i| (0..6).map(move |j| (i, j)))).unwrap());
@@ -232,7 +232,8 @@ fn zero_eigenvalues_are_raised_and_counted() {
     }
 }
 
-/// One set of holdings for several matrices, with borders alike and not: each solution is that of a set of its own.
+/// One set of holdings for several matrices, with equal and with different borders: each solution equals that with a
+/// separate set.
 #[test]
 fn nodes_serve_on_only_while_borders_are_the_same() {
     let mut random = Random(11);
@@ -271,7 +272,7 @@ fn singular_systems_are_refused() {
     for kind in kinds() {
         for nodes in [2, 12] {
             let System { mut sparse, holdings, .. } = system(&mut random, 2, nodes, kind);
-            // The last row is another's twin: the first of the equilibrium.
+            // The last row is a copy of the first equilibrium row.
             let last = sparse.lower.len() - 1;
             let n = sparse.pattern.size();
             let mut twin = SparseEntries::new();
@@ -303,7 +304,7 @@ fn singular_systems_are_refused() {
     assert!(SparseFactorisation::new(wrong, &Holdings::default()).is_none());
 }
 
-/// LU of the whole gives the same as block elimination.
+/// LU of the whole matrix gives the solution of the dense factorisation.
 #[test]
 fn the_whole_may_be_factorised() {
     let mut random = Random(17);
@@ -344,7 +345,7 @@ fn a_nearby_factorisation_gives_the_solution_to_rounding() {
     }
 }
 
-/// The solution has no part where the two matrices have eigenvalues of different sign.
+/// The solution has no component along the eigenvector whose eigenvalue differs in sign between the two matrices.
 #[test]
 fn a_matrix_of_another_sign_is_not_nearby() {
     let pattern = Arc::new(Pattern::new(3, (0..3).map(|unknown| (unknown, unknown))).unwrap());
@@ -363,7 +364,7 @@ fn a_matrix_of_another_sign_is_not_nearby() {
     assert!(!comes_out(-1e-3));
 }
 
-/// With another last row a factorisation is that of the matrix with this row, to the last bit.
+/// A factorisation with its last row replaced equals a new factorisation of the matrix with this row, to the last bit.
 #[test]
 fn the_last_row_may_be_another() {
     let random = &mut Random(53);

@@ -1,4 +1,4 @@
-//! Misuse, told apart from numerical trouble before anything is computed.
+//! Checks of the input, which separate misuse from numerical failure before any computation.
 
 use nalgebra::DVector;
 
@@ -9,7 +9,7 @@ use crate::complementarity::mpec::settings::Settings;
 /// Checks lengths, bounds and settings.
 ///
 /// # Errors
-/// The first thing that does not fit.
+/// The first inconsistency found.
 pub fn check_input<P: Problem + ?Sized>(
     problem: &P,
     start: &DVector<f64>,

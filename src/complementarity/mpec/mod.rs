@@ -6,23 +6,24 @@
 //! ```
 //!
 //! solved through a sequence of regularised problems (`a_i b_i <= ε`, ε falling to 0) by sequential quadratic
-//! programming. Nothing here knows of structures or contacts; [`Problem`] is all that is asked, [`solve`] all that is
-//! called.
+//! programming. The module is independent of structures and contacts: a caller implements [`Problem`] and calls
+//! [`solve`].
 //!
 //! Cost, measured in a release build on increments of a one-bar truss (7 variables, 3 equalities, 3 pairs): a quadratic
-//! program takes 2 µs from a good working set and 80 to 240 µs by the interior-point method; a warm increment names its
-//! pattern in 1 or 2 programs and converges in 4, without the interior-point method. Matrices are kept by their entries,
-//! and a branch whose equalities leave a line is condensed on it: one sparse factorisation a program.
+//! program takes 2 µs from a good working set and 80 to 240 µs by the interior-point method; a warm-started increment
+//! identifies its pattern in 1 or 2 programs and converges in 4, without the interior-point method. Matrices are stored
+//! by their entries, and a branch whose equalities leave a line is reduced to this line: one sparse factorisation per
+//! program.
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
-//! | [`program`] | what a problem has to tell, its values at one point, the second-order cone |
-//! | [`settings`], [`result`], `input_validation` | what the caller chooses, gets, and got wrong |
+//! | [`program`] | the interface of a problem, its values at one point, the second-order cone |
+//! | [`settings`], [`result`], `input_validation` | settings, results, and checks of the input |
 //! | `solver` | the sequence of regularised problems, restarts |
-//! | `piecewise_descent` | one pattern of zero members after another |
-//! | `stationarity` | how stationary a point is |
-//! | `unboundedness` | iterates on their way to infinity |
-//! | [`smooth_program`] | the smooth program that stands for it, by sequential quadratic programming |
+//! | `piecewise_descent` | descent over patterns of zero members |
+//! | `stationarity` | the kind of stationarity of a point |
+//! | `unboundedness` | detection of iterates that tend to infinity |
+//! | [`smooth_program`] | the smooth program of a pattern, by sequential quadratic programming |
 //! | [`quadratic_program`] | one quadratic program |
 //! | [`semismooth`] | Newton's method on the complementarity system itself |
 

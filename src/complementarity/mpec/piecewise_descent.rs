@@ -1,9 +1,9 @@
-//! Descent over branches: a pattern of zero members is solved as a smooth program, the result is judged, and where a
-//! neighbouring branch leads further down, that one is solved next.
+//! Descent over branches: a pattern of zero members is solved as a smooth program, the result is classified, and a
+//! neighbouring branch with descent, if any, is solved next.
 //!
-//! A branch program has no products, so it meets the usual constraint qualifications where the regularised one with a
-//! small `ε` does not, and its solution is complementary exactly. The objective falls from branch to branch, hence no
-//! branch comes twice; the number of changes is bounded all the same.
+//! A branch program has no products, so it satisfies the usual constraint qualifications where the regularised program
+//! with a small `ε` does not, and its solution is exactly complementary. The objective falls from branch to branch, so
+//! no branch occurs twice; the number of changes is bounded nevertheless.
 //!
 //! Source: the piecewise programming of Z.-Q. Luo, J.-S. Pang and D. Ralph, *Mathematical Programs with Equilibrium
 //! Constraints* (Cambridge University Press, 1996), doi:10.1017/CBO9780511983658.
@@ -23,18 +23,18 @@ use crate::complementarity::mpec::smooth_program::sqp::{self, SqpEnd, SqpOutcome
 use crate::complementarity::mpec::stationarity::{self, NoVerdict};
 use crate::resources::cancel::CancelFlag;
 
-/// A pair whose smaller member is less than this part of the larger has a clear pattern.
+/// A pair whose smaller member is less than this fraction of the larger has a clear pattern.
 const CLEAR_RATIO: f64 = 0.05;
-/// Members of a pair, at a converged point, within which both are zero to rounding.
+/// Magnitude up to which both members of a pair at a converged point are zero to rounding.
 const BOTH_ZERO: f64 = 1e-11;
-/// How much further than what a settled point leaves violated its members are from certain.
+/// Multiple of the violation at a settled point up to which members may be zero.
 const LEEWAY: f64 = 10.0;
 /// Decrease of the objective that justifies another branch, relative to `1 + |f|`.
 const WORTHWHILE: f64 = 1e-10;
 
-/// Most pairs whose branches are all tried before a problem is called infeasible, whatever the settings ask for.
+/// Largest number of pairs whose branches are all tried before a problem is called infeasible, whatever the settings.
 const ENUMERATION_CEILING: usize = 10;
-/// A point that a search over branches or a regularised program ended at.
+/// The end point of a search over branches or of a regularised program.
 #[derive(Debug, Clone)]
 pub struct CandidatePoint {
     pub end: SqpEnd,
@@ -54,7 +54,7 @@ impl CandidatePoint {
         self.infeasibility() <= tolerance
     }
 
-    /// Nothing better can be hoped for locally.
+    /// Whether no local improvement is possible.
     pub fn is_final(&self, tolerance: f64) -> bool {
         self.is_feasible(tolerance)
             && match self.stationarity {
@@ -68,7 +68,7 @@ impl CandidatePoint {
     }
 }
 
-/// The branch whose zero members are the smaller ones.
+/// The branch in which the smaller member of each pair is zero.
 pub fn nearest_pattern(at: &ProgramEvaluation) -> TreatmentPattern {
     let pairs = at.first.iter().zip(at.second.iter());
     TreatmentPattern {
@@ -77,8 +77,8 @@ pub fn nearest_pattern(at: &ProgramEvaluation) -> TreatmentPattern {
     }
 }
 
-/// The branch nearest to a point, then those around it: all of them where there are few scalar pairs (at most `limit`) and
-/// no cones, else those that differ in one pair.
+/// The branch nearest to a point, then the branches around it: all branches where there are few scalar pairs (at most
+/// `limit`) and no cones, otherwise those that differ in one pair.
 pub fn patterns_around(at: &ProgramEvaluation, limit: usize) -> Vec<TreatmentPattern> {
     let nearest = nearest_pattern(at);
     let pairs = nearest.pairs.len();
@@ -113,15 +113,16 @@ pub fn patterns_around(at: &ProgramEvaluation, limit: usize) -> Vec<TreatmentPat
     patterns
 }
 
-/// True where every pair's smaller member is small beside the larger, and every cone pair nearly complementary.
+/// True where the smaller member of every pair is small compared with the larger, and every cone pair is nearly
+/// complementary.
 pub fn is_clear(at: &ProgramEvaluation) -> bool {
     let largest = |v: &[f64]| v.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     at.first.iter().zip(at.second.iter()).all(|(a, b)| a.min(*b) <= CLEAR_RATIO * a.max(*b))
         && at.cones.pairs().all(|(a, b)| cone::natural_residual(a, b) <= CLEAR_RATIO * largest(a).max(largest(b)))
 }
 
-/// Solves the branch `pair_treatment` from `start` and follows descent into its neighbours. The end
-/// of the candidate says where the whole solve has to stop: cancelled, or a function that is not finite.
+/// Solves the branch `pattern` from `start` and follows descent into neighbouring branches. The candidate's end states
+/// whether the whole solve has to stop: cancelled, or a function value that is not finite.
 pub fn descend<P: Problem + ?Sized>(
     problem: &P,
     bounds: &(DVector<f64>, DVector<f64>),
@@ -166,7 +167,7 @@ pub fn descend<P: Problem + ?Sized>(
             return candidate;
         }
         if candidate.end == SqpEnd::Settled {
-            // A biactive pair: the pattern is not certain after all, and a verdict needs a converged point.
+            // A biactive pair: the pattern is uncertain, and its classification requires a converged point.
             stop_when_settled = false;
             changes_left -= 1;
             start.copy_from(&candidate.x);
@@ -190,14 +191,15 @@ pub fn descend<P: Problem + ?Sized>(
     }
 }
 
-/// Members of a pair at a settled point that may both be zero: what is left violated says how far they may still move.
+/// Magnitude up to which both members of a pair at a settled point may be zero: the remaining violation indicates how
+/// far they may still change.
 fn uncertain(at: &ProgramEvaluation, settings: &Settings) -> f64 {
     settings.biactive_tolerance.max(LEEWAY * at.largest_violation())
 }
 
-/// Solves the branch `pair_treatment` from `start` and goes into no other. The candidate is settled or stationary where no row but
-/// those of the branch bound it: strongly, or in one branch where a pair is zero that another branch might lead down from.
-/// It is of no kind where a row bound it.
+/// Solves the branch `pattern` from `start` without changing to another branch. The candidate is settled or stationary
+/// where only the rows of the branch are active: strongly, or in one branch where both members of a pair are zero and
+/// another branch might give descent. Its kind is unknown where another row is active.
 pub fn follow<P: Problem + ?Sized>(
     problem: &P,
     bounds: &(DVector<f64>, DVector<f64>),
@@ -238,7 +240,7 @@ pub fn follow<P: Problem + ?Sized>(
     }
 }
 
-/// Classifies a converged point; returns the branch that leads down from it.
+/// Classifies a converged point; returns the branch with descent from it, if any.
 fn judge<P: Problem + ?Sized>(
     problem: &P,
     pattern: &TreatmentPattern,

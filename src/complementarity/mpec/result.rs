@@ -1,4 +1,4 @@
-//! What a solve returns.
+//! The result of a solve.
 
 use crate::complementarity::mpec::program::counts::{SolverCounts, SolverIterate};
 use nalgebra::DVector;
@@ -9,7 +9,7 @@ use crate::complementarity::mpec::program::cone::ConeActivity;
 pub use crate::complementarity::mpec::program::evaluation::Quantity;
 pub use crate::complementarity::mpec::smooth_program::relaxation::Multipliers;
 
-/// Why a solve ended.
+/// The status at the end of a solve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SolveStatus {
     /// Feasible, complementary, and stationary in the sense of [`ProgramSolution::stationarity`].
@@ -18,15 +18,16 @@ pub enum SolveStatus {
     PatternSettled,
     /// Feasible and complementary, but no stationarity was established.
     Feasible,
-    /// The violation is locally smallest and not zero, from every start tried.
+    /// From every start tried, the violation has a local minimum above zero.
     Infeasible,
     /// An iteration limit was reached before feasibility.
     IterationLimit,
-    /// No step was found that makes progress, and the point is not feasible.
+    /// No step makes progress, and the point is not feasible.
     NoProgress,
     /// The objective falls without bound on feasible points.
     Unbounded,
-    /// The infimum is not attained: the conditions of a solution hold better and better while a variable grows without end.
+    /// The infimum is not attained: the optimality conditions hold ever more closely while a variable grows without
+    /// bound.
     UnboundedIterates(Growth),
     /// A function returned a number that is not finite.
     NotFinite(Quantity),
@@ -34,13 +35,13 @@ pub enum SolveStatus {
     Cancelled,
 }
 
-/// A variable that grows without end.
+/// A variable that grows without bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Growth {
     pub variable: usize,
-    /// Where the conditions of a solution held to the tolerance.
+    /// Value at which the optimality conditions hold to the tolerance.
     pub from: f64,
-    /// As far out as the objective was seen to fall.
+    /// Largest value up to which the objective was found to fall.
     pub to: f64,
 }
 
@@ -51,21 +52,21 @@ pub struct Growth {
 /// doi:10.1287/moor.25.1.1.15213.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StationarityKind {
-    /// No first-order descent even with the biactive pairs' complementarity taken away.
+    /// No first-order descent, even without complementarity of the biactive pairs.
     Strong,
     /// No first-order descent in any of the enumerated branches.
     Branch,
     Mordukhovich,
     Clarke,
     Weak,
-    /// Multipliers exist in one of the branches that meet where cone pairs are biactive, and not all others were shown to
-    /// have them: where both members vanish, infinitely many meet. Nothing is claimed of B-stationarity.
+    /// Multipliers exist in one of the branches that meet at biactive pairs, but were not shown to exist in all others
+    /// (where both members of a cone pair vanish, infinitely many branches meet). B-stationarity is not claimed.
     OneBranch,
     /// Not stationary, or not established.
     Unknown,
 }
 
-/// A point and what is known of it.
+/// The point returned by a solve, with its status and multipliers.
 #[derive(Debug, Clone)]
 pub struct ProgramSolution {
     pub status: SolveStatus,
@@ -73,23 +74,23 @@ pub struct ProgramSolution {
     pub x: DVector<f64>,
     pub objective: f64,
     pub multipliers: Multipliers,
-    /// One a pair.
+    /// One per pair.
     pub activity: Vec<PairActivity>,
-    /// One a cone pair.
+    /// One per cone pair.
     pub cone_activity: Vec<ConeActivity>,
     pub stationarity: StationarityKind,
-    /// Largest violation of an equality, inequality or sign; bounds hold always.
+    /// Largest violation of an equality, inequality or sign; bounds always hold.
     pub largest_violation: f64,
-    /// Largest `|a_i b_i|`, of the cone pairs `|A_i·B_i|`.
+    /// Largest `|a_i b_i|`, or `|A_i·B_i|` for cone pairs.
     pub largest_product: f64,
     pub counts: SolverCounts,
-    /// The last `ε` visited; `None` where the start's own pattern was enough.
+    /// The last `ε` used; `None` where the start's own pattern was sufficient.
     pub last_relaxation: Option<f64>,
-    /// One a step of sequential quadratic programming, in order; empty unless asked for.
+    /// One per step of sequential quadratic programming, in order; empty unless requested.
     pub iterates: Vec<SolverIterate>,
 }
 
-/// Misuse.
+/// Invalid input of a solve.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ProgramInputError {
     #[error("the start has {found} variables, the problem {expected}")]

@@ -1,15 +1,16 @@
-//! Newton's method on the complementarity system itself, to round-off.
+//! Semismooth Newton method for the complementarity system itself, to round-off.
 //!
 //! ```text
 //! h(x) = 0,     min(a_i, b_i) = 0,     A_j - P(A_j - B_j) = 0,     c(x) = 0
 //! ```
 //!
-//! `P` projects on the second-order cone (`program::cone`); `c` is one closing equation of the caller's where the system
-//! has one unknown too many, as an increment has (its arc length). `A - P(A - B)` vanishes exactly for complementary
-//! members of the cone, and where the projection has no derivative any element of its B-subdifferential serves: the map
-//! is strongly semismooth, so convergence is quadratic from close by, whichever way the members of a pair go, also where
-//! the direction of slip is not known beforehand. Far away nothing is promised: steps are halved while the residual does
-//! not fall, and the end says whether it converged. Inequalities, bounds and the objective play no part.
+//! `P` projects on the second-order cone (`program::cone`); `c` is one closing equation from the caller where the
+//! system has one unknown more than equations, as in an increment (its arc length). `A - P(A - B)` vanishes exactly for
+//! complementary members of the cone; where the projection has no derivative, an element of its B-subdifferential is
+//! used. The map is strongly semismooth, so local convergence is quadratic whichever member of a pair vanishes, even
+//! where the direction of slip is not known beforehand. Global convergence is not guaranteed: steps are halved while
+//! the residual does not fall, and the result states whether the method converged. Inequalities, bounds and the
+//! objective are ignored.
 //!
 //! Sources: S. Hayashi, N. Yamashita and M. Fukushima, *A combined smoothing and regularization method for monotone
 //! second-order cone complementarity problems*, SIAM J. Optim. 15 (2005), doi:10.1137/S1052623403421516 (the map and its
@@ -24,26 +25,26 @@ use crate::complementarity::mpec::program::evaluation::{ProgramEvaluation, Quant
 use crate::complementarity::mpec::program::problem::Problem;
 use crate::resources::cancel::CancelFlag;
 
-/// Iterations before the system is given up.
+/// Largest number of iterations.
 const MOST_ITERATIONS: usize = 30;
-/// Halvings of a step.
+/// Largest number of halvings of a step.
 const HALVINGS: usize = 12;
-/// Full steps taken although no part of them makes the residual smaller: where a pair changes sides, the way to the
-/// solution may lead over larger residuals.
+/// Number of full steps taken although no fraction of them reduces the residual: where a pair changes its zero member,
+/// the residual may have to grow on the way to the solution.
 const WATCHDOG_STEPS: usize = 3;
-/// Residual of a converged system.
+/// Residual up to which the system counts as converged.
 const CONVERGED: f64 = 1e-11;
-/// Residual below which iterating on gains nothing.
+/// Residual below which further iterations gain nothing.
 const ROUND_OFF: f64 = 1e-15;
-/// Singular values below this part of the largest count as zero.
+/// Singular values below this fraction of the largest count as zero.
 const RANK: f64 = 1e-11;
-/// Sweeps of the singular value decomposition.
+/// Largest number of sweeps of the singular value decomposition.
 const SWEEPS: usize = 1000;
 
 /// An equation that closes the system: its value and gradient.
 pub type Closing<'a> = &'a dyn Fn(&DVector<f64>) -> (f64, DVector<f64>);
 
-/// Where the method ended.
+/// The end point of the method.
 #[derive(Debug, Clone)]
 pub struct Polished {
     pub x: DVector<f64>,
@@ -59,7 +60,7 @@ impl Polished {
     }
 }
 
-/// Runs from `start`.
+/// Runs the method from `start`.
 ///
 /// # Errors
 /// The quantity that is not finite at the start.
@@ -87,7 +88,7 @@ pub fn polish<P: Problem + ?Sized>(
         let Some(step) = newton_step(jacobian(&at, &x, closing), &values) else { break };
         let (next, next_values) = match shortened(problem, &mut at, &x, &step, &values, closing) {
             Some(better) => better,
-            // Below the bar, a step that no longer helps is round-off.
+            // Below the convergence tolerance, a step without progress is round-off.
             None if size <= CONVERGED || watchdog_steps == 0 => break,
             None => {
                 watchdog_steps -= 1;
@@ -112,8 +113,8 @@ pub fn polish<P: Problem + ?Sized>(
     Ok(Polished { x: best.1, is_converged: best.0 <= CONVERGED, residuals })
 }
 
-/// The first of `step`, half of it, ... that makes the residual smaller; `at` is left with the values there. `None`
-/// where none does.
+/// The first point after `step`, `step/2`, ... with a smaller residual, and the residual; `at` then has the values at
+/// this point. `None` where no point has a smaller residual.
 fn shortened<P: Problem + ?Sized>(
     problem: &P,
     at: &mut ProgramEvaluation,
@@ -179,8 +180,8 @@ fn put_rows(matrix: &mut DMatrix<f64>, first: usize, entries: impl Iterator<Item
     entries.for_each(|(row, column, value)| matrix[(first + row, column)] = value);
 }
 
-/// `-J⁻¹ F`; the least-squares solution of least norm where `J` is singular: a contact that is apart leaves the bound on
-/// its slip undetermined.
+/// The step `-J⁻¹ F`, or the least-squares solution of minimum norm where `J` is singular: an open contact leaves the
+/// bound on its slip undetermined.
 fn newton_step(matrix: DMatrix<f64>, values: &DVector<f64>) -> Option<DVector<f64>> {
     let right = -values;
     if matrix.is_square()

@@ -1,13 +1,13 @@
-//! What a user of the solver may choose.
+//! Settings of the solver.
 
-/// When a branch counts as solved.
+/// The criterion by which a branch counts as solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Finish {
     /// At a Karush-Kuhn-Tucker point of the branch, to the tolerance.
     #[default]
     Converged,
-    /// As soon as two successive quadratic programs end with the same working set and no pair is biactive: the caller
-    /// wants the contact mode and refines the point itself.
+    /// As soon as two successive quadratic programs end with the same working set and no pair is biactive: for callers
+    /// that need the contact mode only and refine the point themselves.
     PatternSettled,
 }
 
@@ -22,25 +22,26 @@ pub struct Settings {
     pub last_relaxation: f64,
     /// Accepted violation of a constraint, absolute, and residual of stationarity, relative to `1 + ‖∇f‖∞`.
     pub tolerance: f64,
-    /// Both members of a pair at most this: the pair is biactive.
+    /// A pair with both members at most this is biactive.
     pub biactive_tolerance: f64,
-    /// Iterations of one sequential quadratic program.
+    /// Largest number of iterations of one sequential quadratic program.
     pub iteration_limit: usize,
-    /// The start's own pattern of zero members is tried before any regularisation.
+    /// Whether the start's own pattern of zero members is tried before any regularisation.
     pub warm_start: bool,
     pub finish: Finish,
-    /// Restarts from a larger `ε` before giving up.
+    /// Largest number of restarts from a larger `ε`.
     pub restarts: usize,
-    /// Largest number of biactive pairs whose branches (2 to its power) are enumerated to judge a point; also of all
-    /// pairs, before a problem is called infeasible. Capped at 16 and 10.
+    /// Largest number `n` of biactive pairs whose `2ⁿ` branches are enumerated to classify a point, and of all pairs
+    /// whose branches are tried before a problem is called infeasible; capped at 16 and 10.
     pub enumeration_limit: usize,
-    /// Whether what passes for a solution is looked beyond, so that iterates without bound are told from it.
+    /// Whether an apparent solution is tested for unbounded iterates.
     pub looks_beyond: bool,
-    /// `ε` falls to its last value whatever the pattern shows before; the start's own pattern is not tried first.
+    /// Whether `ε` falls to its last value whatever the pattern in between; the start's own pattern is then not tried
+    /// first.
     pub whole_sequence: bool,
-    /// Every quadratic program by the interior-point method, none by the working set of the one before.
+    /// Whether every quadratic program is solved by the interior-point method, none from the previous working set.
     pub interior_only: bool,
-    /// Iterates are kept: see [`crate::complementarity::mpec::ProgramSolution::iterates`].
+    /// Whether iterates are stored: see [`crate::complementarity::mpec::ProgramSolution::iterates`].
     pub keep_iterates: bool,
 }
 
@@ -66,7 +67,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// For a start near the solution whose pattern is likely right.
+    /// Settings for a start near the solution, with a pattern that is probably correct.
     pub fn warm() -> Self {
         Self { first_relaxation: 1e-4, warm_start: true, ..Self::default() }
     }

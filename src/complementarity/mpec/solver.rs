@@ -1,15 +1,15 @@
-//! A mathematical program with complementarity constraints, from a start to a classified point.
+//! Solution of a mathematical program with complementarity constraints, from a start to a classified point.
 //!
-//! 1. Warm start (or no pairs at all): the branch that the start itself suggests is solved; near a solution that takes
-//!    two or three quadratic programs.
-//! 2. Otherwise regularised programs with `ε` falling from its first to its last value; each starts where the last one
-//!    ended. As soon as every pair's pattern is clear, or has come back unchanged, `mpec::branch` takes over and
-//!    `mpec::stationarity` has the last word.
-//! 3. Where that gave no feasible stationary point: again from the start with a hundred times larger `ε`, a bounded
-//!    number of times; then, where nothing was feasible, from the branches around the least infeasible point. The best
-//!    point seen is returned, with a status that says what it is.
+//! 1. Warm start (or no pairs at all): the branch suggested by the start is solved; near a solution this takes two or
+//!    three quadratic programs.
+//! 2. Otherwise: regularised programs with `ε` falling from its first to its last value, each from the end point of the
+//!    previous program. As soon as the pattern of every pair is clear, or remains unchanged, `mpec::piecewise_descent`
+//!    continues and `mpec::stationarity` classifies the point.
+//! 3. Without a feasible stationary point: again from the start with a hundred times larger `ε`, a bounded number of
+//!    times; then, where no point was feasible, from the branches around the least infeasible point. The best point
+//!    found is returned, with a status that describes it.
 //!
-//! What is found is a local solution. Source of the sequence: S. Scholtes, SIAM J. Optim. 11 (2001),
+//! The result is a local solution. Source of the sequence: S. Scholtes, SIAM J. Optim. 11 (2001),
 //! doi:10.1137/S1052623499361233.
 
 use nalgebra::DVector;
@@ -31,9 +31,9 @@ use crate::resources::cancel::CancelFlag;
 
 /// Factor on `ε` from one restart to the next.
 const RESTART_FACTOR: f64 = 100.0;
-/// Past this, `ε` relaxes nothing any more.
+/// Largest `ε`: a larger value relaxes no further.
 const LARGEST_RELAXATION: f64 = 1e8;
-/// Most values of `ε` in one descent, whatever the settings ask for.
+/// Largest number of values of `ε` in one descent, whatever the settings.
 const LEVEL_LIMIT: usize = 200;
 
 /// Solves `problem` from `start`.
@@ -51,12 +51,13 @@ pub fn solve<P: Problem + ?Sized>(
     solve_by(problem, start, settings, cancel, |run, at| run.go(start, at))
 }
 
-/// Follows one branch from `start` to its own optimum and looks at no other: the branch in which the given member of each
-/// pair is zero (of the pairs without such an entry, and of cone pairs, the member that is smaller at the start).
+/// Follows one branch from `start` to its optimum without examining others: the branch in which the given member of
+/// each pair is zero (for pairs without such an entry, and for cone pairs, the member that is smaller at the start).
 ///
-/// Where nothing holds the branch up on the way, its solution is the problem's: [`SolveStatus::PatternSettled`] or
-/// [`SolveStatus::Solved`], of kind [`StationarityKind::OneBranch`] where a pair is zero to rounding and another branch might
-/// lead further. [`SolveStatus::Feasible`] where the branch ends before, at a pair that has to change.
+/// Where no other constraint becomes active, the branch's solution is the problem's: [`SolveStatus::PatternSettled`] or
+/// [`SolveStatus::Solved`], of kind [`StationarityKind::OneBranch`] where both members of a pair are zero to rounding
+/// and another branch might give descent. [`SolveStatus::Feasible`] where the branch ends earlier, at a pair that has
+/// to change.
 ///
 /// # Errors
 /// [`ProgramInputError`] for a start or bounds that do not fit the problem, or settings out of range.
@@ -76,8 +77,8 @@ pub fn follow_branch<P: Problem + ?Sized>(
     })
 }
 
-/// Solves by a search that begins with the functions' values at the start; it answers the reason where it was stopped
-/// before its time.
+/// Solves by `search`, which starts from the function values at the start and returns the reason where it was stopped
+/// early.
 fn solve_by<'a, P: Problem + ?Sized>(
     problem: &'a P,
     start: &DVector<f64>,
@@ -111,7 +112,7 @@ struct InfeasibleEnds {
     not_finite: Option<Quantity>,
 }
 
-/// A solve under way.
+/// A solve in progress.
 struct SolveInProgress<'a, P: Problem + ?Sized> {
     problem: &'a P,
     bounds: (DVector<f64>, DVector<f64>),
@@ -123,7 +124,7 @@ struct SolveInProgress<'a, P: Problem + ?Sized> {
 }
 
 impl<P: Problem + ?Sized> SolveInProgress<'_, P> {
-    /// Runs to the end; the reason where it was stopped before its time.
+    /// Runs the solve; returns the reason where it was stopped early.
     fn go(&mut self, start: &DVector<f64>, at: &ProgramEvaluation) -> Option<SolveStatus> {
         let unpaired = self.problem.pairs() == 0 && at.cones.count() == 0;
         let may_search = self.settings.warm_start && !self.settings.whole_sequence && piecewise_descent::is_clear(at);
@@ -146,8 +147,8 @@ impl<P: Problem + ?Sized> SolveInProgress<'_, P> {
         self.try_other_branches()
     }
 
-    /// The last resort where no feasible point was found: the branch nearest to the least infeasible one, then
-    /// those that differ in one pair; all of them where there are few pairs.
+    /// The last resort where no feasible point was found: the branch nearest to the least infeasible point, then the
+    /// branches that differ in one pair, or all branches where there are few pairs.
     fn try_other_branches(&mut self) -> Option<SolveStatus> {
         let best = self.best.as_ref().filter(|best| !best.is_feasible(self.settings.tolerance))?;
         let x = best.x.clone();
@@ -159,7 +160,7 @@ impl<P: Problem + ?Sized> SolveInProgress<'_, P> {
         None
     }
 
-    /// One descent of `ε`; an end where there is nothing left to do.
+    /// One descent of `ε`; returns an end where the solve is over.
     fn regularise(&mut self, start: &DVector<f64>, first_relaxation: f64) -> Option<Over> {
         let mut x = start.clone();
         let mut relaxation = first_relaxation;
@@ -203,7 +204,7 @@ impl<P: Problem + ?Sized> SolveInProgress<'_, P> {
                 last_searched = Some(pattern.clone());
             }
             last_pattern = Some(pattern);
-            // Where even this much relaxation left the rows contradictory, less of it can't help.
+            // Where the rows are contradictory even with this `ε`, a smaller `ε` cannot help.
             if is_last || hopeless {
                 return None;
             }
@@ -212,12 +213,12 @@ impl<P: Problem + ?Sized> SolveInProgress<'_, P> {
         None
     }
 
-    /// Descends from the branch nearest to `x`; an end where the point is final or the solve has to stop.
+    /// Descends from the branch nearest to `x`; returns an end where the point is final or the solve has to stop.
     fn search(&mut self, x: &DVector<f64>, at: &ProgramEvaluation) -> Option<Over> {
         self.search_from(x, piecewise_descent::nearest_pattern(at))
     }
 
-    /// Descends from the branch `pair_treatment`.
+    /// Descends from the branch `pattern`.
     fn search_from(&mut self, x: &DVector<f64>, pattern: TreatmentPattern) -> Option<Over> {
         let candidate = piecewise_descent::descend(
             self.problem,
@@ -231,7 +232,7 @@ impl<P: Problem + ?Sized> SolveInProgress<'_, P> {
         self.accept(candidate)
     }
 
-    /// Keeps a point that is better than the last; an end where it is final or the solve has to stop.
+    /// Stores a point that is better than the best so far; returns an end where it is final or the solve has to stop.
     fn accept(&mut self, candidate: CandidatePoint) -> Option<Over> {
         let over = match candidate.end {
             SqpEnd::Cancelled => Some(Over::Stopped(SolveStatus::Cancelled)),
@@ -295,7 +296,8 @@ impl<P: Problem + ?Sized> SolveInProgress<'_, P> {
             },
         };
         let both_zero = self.settings.biactive_tolerance;
-        // A settled pattern is not refined: what its point leaves violated says how near the cones' boundary is near.
+        // The point of a settled pattern is not refined: its violation sets the distance that counts as close to a
+        // cone's boundary.
         let left = if status == SolveStatus::PatternSettled { 10.0 * candidate.at.largest_violation() } else { 0.0 };
         let activities = Activities::of(&candidate.at, both_zero, both_zero.max(left));
         ProgramSolution {
@@ -315,7 +317,7 @@ impl<P: Problem + ?Sized> SolveInProgress<'_, P> {
     }
 }
 
-/// Why a solve need not go on.
+/// The reason why a solve is over.
 enum Over {
     Found,
     Stopped(SolveStatus),
@@ -355,7 +357,7 @@ fn is_better(candidate: &CandidatePoint, best: &CandidatePoint, tolerance: f64) 
     }
 }
 
-/// The start itself, where nothing was computed that is worth returning.
+/// The start itself, where no better point was computed.
 fn empty_solution<P: Problem + ?Sized>(
     problem: &P,
     start: &DVector<f64>,

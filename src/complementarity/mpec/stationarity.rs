@@ -1,4 +1,4 @@
-//! How stationary a feasible point is, and which branch leads down from it where it is not.
+//! The kind of stationarity of a feasible point, and a branch with descent where the point is not stationary.
 //!
 //! With the biactive pairs `B` at `x` (both members zero to a tolerance), projected-gradient programs
 //!
@@ -11,12 +11,13 @@
 //! * `a, b >= 0` on `B`: strong stationarity (all multipliers of `B` nonnegative);
 //! * one member zero, the other nonnegative, in each of the `2^|B|` ways: stationarity of every branch (B-stationarity
 //!   of the linearised program, hence of the program where the usual tangent condition holds);
-//! * `a = b = 0` on `B`: weak stationarity; its multipliers' signs tell Mordukhovich and Clarke.
+//! * `a = b = 0` on `B`: weak stationarity; its multipliers' signs distinguish Mordukhovich and Clarke.
 //!
-//! Cone pairs. Where one is not biactive, it is a smooth manifold nearby, the branch at hand, and changes nothing of the
-//! above. Where one member vanishes and the other lies on the boundary, two branches meet, and the enumeration goes over
-//! both: stationarity of every branch, or no more than of one. Where both vanish, infinitely many branches meet; then only
-//! the two in which one stays zero and the one at hand are looked at, and no more than one's stationarity is claimed.
+//! Cone pairs: near a pair that is not biactive, the constraint is a smooth manifold, the current branch, and the above
+//! remains unchanged. Where one member vanishes and the other lies on the boundary, two branches meet, and the
+//! enumeration includes both: the result is stationarity of every branch, or of one branch at most. Where both members
+//! vanish, infinitely many branches meet; only the two branches with one zero member and the current branch are
+//! examined, and stationarity of one branch at most is claimed.
 //!
 //! Source: H. Scheel and S. Scholtes, *Mathematical programs with complementarity constraints: stationarity, optimality,
 //! and sensitivity*, Math. Oper. Res. 25 (2000), doi:10.1287/moor.25.1.1.15213.
@@ -39,10 +40,10 @@ use crate::resources::cancel::CancelFlag;
 /// Length of a projected gradient that counts as zero, relative to `1 + ‖∇f‖∞`.
 const STATIONARY_LENGTH: f64 = 1e-6;
 
-/// Most biactive pairs whose branches are enumerated, whatever the settings ask for.
+/// Largest number of biactive pairs whose branches are enumerated, whatever the settings.
 const ENUMERATION_CEILING: usize = 16;
 
-/// What is known of a point.
+/// The stationarity established for a point.
 #[derive(Debug, Clone)]
 pub struct StationarityVerdict {
     pub kind: StationarityKind,
@@ -52,7 +53,7 @@ pub struct StationarityVerdict {
     pub descent: Option<TreatmentPattern>,
 }
 
-/// Why no verdict was reached.
+/// The reason why no verdict was reached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoVerdict {
     NotFinite(Quantity),
@@ -64,13 +65,13 @@ pub fn biactive(at: &ProgramEvaluation, tolerance: f64) -> Vec<usize> {
     (0..at.first.len()).filter(|&i| at.first[i] <= tolerance && at.second[i] <= tolerance).collect()
 }
 
-/// Whether any pair or cone pair is.
+/// Whether any pair or cone pair is biactive.
 pub fn is_biactive(at: &ProgramEvaluation, tolerance: f64) -> bool {
     !biactive(at, tolerance).is_empty()
         || at.cones.pairs().any(|(a, b)| ConeActivity::of(a, b, tolerance).is_biactive())
 }
 
-/// The branches that meet at each biactive cone pair, and whether that is all of them.
+/// The branches that meet at each biactive cone pair, and whether the lists are complete.
 fn cone_branches(
     at: &ProgramEvaluation,
     pattern: &TreatmentPattern,
@@ -145,8 +146,8 @@ struct Projection {
     multipliers: Multipliers,
 }
 
-/// Classifies the feasible point `x` of the branch `pair_treatment`. The branch program's multipliers,
-/// where it converged, may settle the matter without a further program.
+/// Classifies the feasible point `x` of the branch `pattern`. The multipliers of the converged branch program may
+/// decide without a further program.
 ///
 /// # Errors
 /// [`NoVerdict`] where a derivative is not finite or the flag is raised.
@@ -203,16 +204,16 @@ pub fn classify<P: Problem + ?Sized>(
     Ok(StationarityVerdict { kind, multipliers, descent: descent(best) })
 }
 
-/// What the projections onto the branches that meet at a point tell.
+/// The results of the projections onto the branches that meet at a point.
 struct BranchProjections {
-    /// The branch along which the objective falls most, if it does along one, with that objective.
+    /// The branch with the largest decrease of the objective, if any, with the objective reached.
     best: Option<(f64, TreatmentPattern)>,
-    /// Multipliers of the first branch that is stationary.
+    /// Multipliers of the first stationary branch.
     stationary: Option<Multipliers>,
     all_judged: bool,
 }
 
-/// Projects onto every branch, if they are not too many.
+/// Projects onto every branch, unless there are too many.
 fn project_onto_branches(
     judge: &StationarityTest<'_>,
     pattern: &TreatmentPattern,
@@ -231,7 +232,7 @@ fn project_onto_branches(
     let mut all_judged = branches.is_some();
     if let Some(branches) = branches {
         for branch in 0..branches {
-            // The branch's number, read as one digit a biactive pair.
+            // The branch's number has one digit per biactive pair.
             let digit = |place: usize| branch / choices[..place].iter().product::<usize>() % choices[place];
             let zero_member =
                 |place: usize| if digit(place) == 0 { PairTreatment::FirstZero } else { PairTreatment::SecondZero };
@@ -255,7 +256,7 @@ fn project_onto_branches(
     Ok(BranchProjections { best, stationary, all_judged })
 }
 
-/// A pattern with the biactive pairs treated by their place among these.
+/// The pattern with each biactive pair treated by its index among the biactive pairs.
 fn with_biactive(
     pattern: &TreatmentPattern,
     both: &[usize],

@@ -1,12 +1,12 @@
-//! Whether a point that passes for a solution is a place on a way to infinity.
+//! Detection of apparent solutions that belong to iterates tending to infinity.
 //!
-//! Where an infimum is not attained, the conditions of Karush, Kuhn and Tucker hold better and better as some variable grows,
-//! to any tolerance in the end, and nothing there is a solution. At a point that is one, growing any variable by a part of
-//! itself gains nothing at first order: with the Lagrangian's gradient `r`, `r_j x_j` is nothing beside the objective. Where
-//! it is more than that, the branch is solved again with that variable held at ten, a hundred, a thousand times its value and
-//! so on. If the optimum rises anywhere there is a solution, near or far. If it falls as far out as it can be told, a thousand
-//! times at the least, there is none: the iterates are unbounded. Only ratios of quantities to their like are used, so that
-//! units do not matter.
+//! Where an infimum is not attained, the Karush-Kuhn-Tucker conditions hold ever more closely as some variable grows,
+//! finally to any tolerance, although there is no solution. At a solution, a relative increase of any variable gains
+//! nothing at first order: with the gradient `r` of the Lagrangian, `r_j x_j` is negligible compared with the
+//! objective. Where it is not negligible, the branch is solved again with this variable fixed at ten, a hundred, a
+//! thousand times its value and so on. If the optimum rises anywhere, there is a solution, near or far. If the optimum
+//! falls as far as rounding allows, and at least up to a thousand times the value, there is none: the iterates are
+//! unbounded. Only ratios of like quantities are used, so the result is independent of units.
 
 use nalgebra::DVector;
 
@@ -20,18 +20,20 @@ use crate::complementarity::mpec::smooth_program::relaxation::SmoothProgramRows;
 use crate::complementarity::mpec::smooth_program::sqp::{self, SqpEnd, SqpSettings};
 use crate::resources::cancel::CancelFlag;
 
-/// What growing a variable by itself gains, over the size of the objective, that is worth a look.
+/// First-order gain by a relative increase of a variable, relative to the objective, from which the variable is
+/// examined.
 const GAINS: f64 = 1e-6;
-/// Variables that are looked at, those that gain most.
+/// Number of variables examined, those with the largest gain.
 const MOST_VARIABLES: usize = 3;
-/// Multiples of a variable at which the branch is solved again: powers of this, so many of them at the most and at the least.
+/// Factor between the multiples of a variable at which the branch is solved again; the largest number of multiples, and
+/// the smallest that shows unboundedness.
 const MULTIPLE: f64 = 10.0;
 const MOST_MULTIPLES: usize = 12;
 const FEWEST: usize = 3;
-/// Part of the size of the objective that is its rounding.
+/// Rounding error of the objective, relative to its magnitude.
 const ROUNDING: f64 = 1e-13;
 
-/// The variable along which the objective falls on and on from a point that passes for a solution.
+/// The variable along which the objective falls without end from an apparent solution; `None` where there is none.
 pub fn without_end<P: Problem + ?Sized>(
     problem: &P,
     bounds: &(DVector<f64>, DVector<f64>),
@@ -80,7 +82,7 @@ pub fn without_end<P: Problem + ?Sized>(
     })
 }
 
-/// What growing each variable by itself gains at first order: `-r_j x_j`, `r` the gradient of the Lagrangian.
+/// The first-order gain by a relative increase of each variable: `-r_j x_j`, with `r` the gradient of the Lagrangian.
 fn gains(at: &ProgramEvaluation, candidate: &CandidatePoint) -> DVector<f64> {
     let multipliers = &candidate.multipliers;
     let mut rest = at.gradient.clone();

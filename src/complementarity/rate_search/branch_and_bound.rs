@@ -1,11 +1,11 @@
 //! Branch and bound over the entities.
 //!
-//! A node has some entities decided; what is left is the cone of their options' forms and of what the options of every
-//! other entity have in common. The node is done where that cone holds nothing but zero, where it is one line (whatever
-//! fits that line is examined), or where the open entities are certified to have one ray for each sign of the load rate.
-//! Otherwise the entity that fits the cone's present point worst is decided, best option first. The first branching is
-//! on the sign of the load rate. Every ray comes from the exact equations of its combination, so that the search decides
-//! only where to look.
+//! At a node some entities are decided; the cone of the node is given by the forms of their options and by the
+//! inequalities common to all options of every other entity. The node is closed where the cone contains only zero,
+//! where it is one line (all options that fit the line are examined), or where the open entities are certified to have
+//! one ray for each sign of the load rate. Otherwise an entity that does not fit the cone's current point is decided,
+//! best option first. The first branching is on the sign of the load rate. Every ray is computed from the exact
+//! equations of its combination: the search only selects the combinations to examine.
 
 use crate::complementarity::rate_search::single_combination;
 use crate::complementarity::rate_search::unbranched;
@@ -22,18 +22,18 @@ use std::rc::Rc;
 /// A feasible direction under one combination of options.
 #[derive(Debug, Clone)]
 pub struct Ray {
-    /// Of unit arc length.
+    /// Weights of unit arc length.
     pub weights: DVector<f64>,
-    /// The options of each entity that hold; under every combination of them the ray is feasible.
+    /// The options of each entity that hold; the ray is feasible under every combination of these options.
     pub fitting: Vec<Vec<usize>>,
-    /// Those and the ones that nearly hold.
+    /// The fitting options and the options that nearly hold.
     pub in_doubt: Vec<Vec<usize>>,
-    /// Some inequality holds with equality.
+    /// Whether some inequality holds with equality.
     pub weak: bool,
 }
 
 impl Ray {
-    /// The first combination under which it is feasible: held where it can be.
+    /// The first combination under which the ray is feasible, with held options where possible.
     pub fn chosen(&self) -> Vec<usize> {
         self.fitting.iter().map(|options| options[0]).collect()
     }
@@ -43,41 +43,41 @@ impl Ray {
     }
 }
 
-/// What was found.
+/// The findings of a search.
 #[derive(Debug, Clone, Default)]
 pub struct Findings {
-    /// Each motion once, in the order of their first combinations, the first entity counting fastest.
+    /// Each motion once, in the order of the first combinations, with the first entity varying fastest.
     pub rays: Vec<Ray>,
-    /// Combinations that were not examined, saturating; an upper bound.
+    /// Number of combinations that were not examined, saturating; an upper bound.
     pub unexplored: u64,
-    /// Some combination has more than one independent vector, or one along which nothing moves.
+    /// Whether some combination has more than one independent vector, or a vector without motion.
     pub degenerate: bool,
-    /// Bases of such sets, one vector a column.
+    /// Bases of solution sets of more than one dimension, one vector per column.
     pub planes: Vec<DMatrix<f64>>,
-    /// One ray for each sign of the load rate, by the certificate, without any branching.
+    /// Whether the certificate gives one ray for each sign of the load rate, without any branching.
     pub certified: bool,
-    /// Nodes and combinations looked at, large ones counted as several.
+    /// Number of nodes and combinations examined, large ones counted several times.
     pub examined: u64,
 }
 
-/// How far a search may go.
+/// The limits of a search.
 #[derive(Debug, Clone, Copy)]
 pub struct Effort<'a> {
-    /// Nodes and combinations looked at.
+    /// Largest number of nodes and combinations examined.
     pub most_modes: u64,
-    /// Whether it may end where a certificate says that there is one ray for each sign of the load rate.
+    /// Whether the search may end where a certificate proves one ray for each sign of the load rate.
     pub certify: bool,
     pub cancel: &'a CancelFlag,
 }
 
-/// Entries of a dictionary that make a node count as one; a larger node counts as several.
+/// Number of dictionary entries that count as one unit of work; a larger node counts several times.
 const UNIT_OF_WORK: u64 = 4096;
-/// Nodes spent inside sets of solutions of more than one dimension, whose edges are rays like any other.
+/// Largest number of nodes inside solution sets of more than one dimension, whose edges are rays like any other.
 const MOST_IN_SETS: u64 = 512;
-/// A form this small at a node's point is zero as far as the search is concerned.
+/// A form this small at a node's point counts as zero in the search.
 pub(crate) const FITS: f64 = 1e-7;
 
-/// All rays, as far as the effort goes; `first` gives combinations to examine before the others, where there is no
+/// All rays found within the effort; `first` gives combinations to examine before the others, where there is no
 /// certificate.
 pub fn explore(problem: &RateProblem, first: impl FnOnce() -> Vec<Vec<usize>>, effort: Effort<'_>) -> Findings {
     explore_by(problem, first, effort, lemke)
@@ -88,7 +88,7 @@ pub(crate) fn explore_without_pivoting(problem: &RateProblem, effort: Effort<'_>
     explore_by(problem, Vec::new, effort, |_, _| Vec::new())
 }
 
-/// The same; `further` names combinations to examine where the search was cut.
+/// All rays found within the effort; `further` gives combinations to examine where the search was cut short.
 fn explore_by(
     problem: &RateProblem,
     first: impl FnOnce() -> Vec<Vec<usize>>,
@@ -122,38 +122,38 @@ fn explore_by(
     findings
 }
 
-/// Decided entities and the cone that is left.
+/// The decided entities and the remaining cone.
 pub(crate) struct SearchNode {
     pub chosen: Vec<Option<usize>>,
     pub dictionary: Dictionary,
     /// Sign of the load rate.
     pub sign: f64,
-    /// Inside a set of solutions.
+    /// Whether the node lies inside a solution set of more than one dimension.
     pub in_set: bool,
     /// The entity decided last.
     last: Option<usize>,
 }
 
-/// A child that has not been looked at.
+/// A child that has not been examined yet.
 struct Task {
     parent: Rc<SearchNode>,
     decision: Option<(usize, usize)>,
 }
 
-/// The search as far as it has come.
+/// The state of the search.
 pub(crate) struct BranchAndBound<'a> {
     pub problem: &'a RateProblem,
     pub findings: Findings,
     /// Combinations whose equations were solved.
     pub seen: BTreeSet<Vec<usize>>,
-    /// What they and the rays hold.
+    /// Memory of the combinations and the rays.
     pub held: Taken,
     pub effort: Effort<'a>,
-    /// What all options of each entity have in common, once there is branching.
+    /// The inequalities common to all options of each entity; set when branching begins.
     common: Vec<Vec<Signed>>,
-    /// How strongly entities feel each other, once there is branching.
+    /// The strength of coupling between entities; set when branching begins.
     coupling: DMatrix<f64>,
-    /// What a node counts: large problems take longer over each.
+    /// Work units per node: larger problems take longer per node.
     pub cost: u64,
 }
 
@@ -174,7 +174,7 @@ impl BranchAndBound<'_> {
         let settled = unbranched::settled_signs(self);
         let mut tasks: Vec<Task> = [-1.0, 1.0].into_iter().filter(|sign| !settled.contains(sign)).map(root).collect();
         if tasks.is_empty() {
-            // Rays along which the load rests are left.
+            // Only rays with zero load rate remain.
             let mut dictionary = dictionary.clone();
             if dictionary.rest_load() {
                 let chosen = vec![None; self.problem.entities.len()];
@@ -212,7 +212,7 @@ impl BranchAndBound<'_> {
         }
     }
 
-    /// Combinations under a task.
+    /// Number of combinations under a task.
     fn combinations_of(&self, task: &Task) -> u64 {
         let decided = task.decision.map(|(entity, _)| entity);
         self.problem
@@ -223,7 +223,7 @@ impl BranchAndBound<'_> {
             .fold(1, |total, (_, entity)| total.saturating_mul(entity.options.len() as u64))
     }
 
-    /// Closes a node or gives its children, the most promising last.
+    /// Closes a node or returns its children, the most promising last.
     fn look_at(&mut self, task: Task) -> Vec<Task> {
         let Some(mut node) = decide(self.problem, task) else { return Vec::new() };
         if simplex::feasibility(&mut node.dictionary) == Feasibility::OnlyLines
@@ -262,7 +262,7 @@ impl BranchAndBound<'_> {
         if !node.in_set
             && let Some(filled) = self.filled(&node)
         {
-            // Whatever is left solves the problem: a set of more than one dimension.
+            // The whole remaining cone solves the problem: a solution set of more than one dimension.
             single_combination::examine(self, &filled);
             node.in_set = true;
         }
@@ -278,9 +278,9 @@ impl BranchAndBound<'_> {
             .collect()
     }
 
-    /// The entity to decide next. Of those that do not fit the node's point, the one that feels the last decision most:
-    /// a decision that cannot be is then refuted near by, in a few nodes. Where all fit, the first that still decides
-    /// something.
+    /// The entity to decide next. Among the entities that do not fit the node's point, the one most strongly coupled to
+    /// the last decision: an impossible decision is then refuted by its neighbours, in a few nodes. Where all entities
+    /// fit, the first whose options still restrict the cone.
     fn next(&self, node: &SearchNode, open: &[usize]) -> usize {
         let mut next: Option<((f64, f64), usize)> = None;
         for &entity in open {
@@ -304,7 +304,7 @@ impl BranchAndBound<'_> {
         next.map(|(_, entity)| entity).or_else(|| open.iter().find(decides).copied()).unwrap_or(open[0])
     }
 
-    /// A combination under which everything left is a solution, if there is one.
+    /// A combination under which the whole remaining cone is a solution, if there is one.
     fn filled(&self, node: &SearchNode) -> Option<Vec<usize>> {
         node.chosen
             .iter()
@@ -321,7 +321,7 @@ impl BranchAndBound<'_> {
     }
 }
 
-/// How far a node's point is from an option.
+/// The largest violation of an option's conditions at a node's point.
 fn misfit(dictionary: &Dictionary, choice: &Choice) -> f64 {
     let zero = choice
         .zero
@@ -331,13 +331,13 @@ fn misfit(dictionary: &Dictionary, choice: &Choice) -> f64 {
     zero.chain(negative).fold(0.0, f64::max)
 }
 
-/// Whether an option holds on the one line or ray that is left.
+/// Whether an option holds on the one remaining line or ray.
 fn fits(dictionary: &Dictionary, choice: &Choice) -> bool {
     misfit(dictionary, choice) <= FITS
         && (!dictionary.is_lines_only() || choice.zero.iter().all(|form| dictionary.vanishes(*form)))
 }
 
-/// The node of a task; `None` where nothing but zero is left.
+/// The node of a task; `None` where only zero remains.
 fn decide(problem: &RateProblem, task: Task) -> Option<SearchNode> {
     let parent = &task.parent;
     let mut node = SearchNode {

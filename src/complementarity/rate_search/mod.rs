@@ -3,10 +3,10 @@
 //! | file | what it does |
 //! |---|---|
 //! | `branch_and_bound` | all rays, by branch and bound over the entities |
-//! | `single_combination` | one combination of options |
-//! | `unbranched` | the rays where a certificate makes branching needless |
-//! | `slip_onset_direction` | slip that begins at a touch in space, whose direction is unknown |
-//! | `simultaneous_slips` | such slips that begin at several nodes at once |
+//! | `single_combination` | the examination of one combination of options |
+//! | `unbranched` | the rays where a certificate makes branching unnecessary |
+//! | `slip_onset_direction` | onset of slip at a touching contact in space, in an unknown direction |
+//! | `simultaneous_slips` | onset of such slips at several nodes simultaneously |
 
 pub(crate) mod branch_and_bound;
 pub(crate) mod simultaneous_slips;

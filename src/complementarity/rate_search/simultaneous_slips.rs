@@ -1,18 +1,17 @@
-//! Slips that begin at once at several touches in space, each in a direction of its own that is unknown.
+//! Simultaneous onset of slip at several touching contacts in space, each in its own unknown direction.
 //!
-//! For a load that rises, and one that falls, the velocities are found by sweeps over the contacts, each solved exactly
-//! with the others as they are (nonlinear Gauss-Seidel, as in `rates`): with the reaction rate `Ṙ = K v + b` of one
-//! node,
+//! For a rising and for a falling load, the velocities are found by sweeps over the contacts, each solved exactly with
+//! the others fixed (nonlinear Gauss-Seidel, as in `rates`): with the reaction rate `Ṙ = K v + b` of one node,
 //!
 //! ```text
 //! stick: v = 0, |b_t| <= μ b_n        free: K v = -b, v_n >= 0
 //! slip:  v = λ d,  λ = -(μ b_n + d·b_t)/(d·K d + μ n·K d) > 0,  Ṙ_n >= 0,  d⊥·(λ K d + b) = 0
 //! ```
 //!
-//! the angles of `d` by a scan of the circle. What the sweeps settle on is solved by Newton's method in the weights and
-//! the angles, to round-off, and kept if it satisfies every inequality. Sweeps start from all combinations of what each
-//! contact alone would do, up to a bound. Where no contact feels another these are all directions; otherwise that is not
-//! claimed.
+//! with the angles of `d` from a scan of the circle. The pattern on which the sweeps settle is solved by Newton's
+//! method in the weights and the angles, to round-off, and kept if it satisfies every inequality. Sweeps start from all
+//! combinations of the solutions of each contact alone, up to a bound. Where the contacts are uncoupled, these are all
+//! directions; otherwise completeness is not claimed.
 
 use crate::algebra::Factorisation;
 use crate::algebra::scalar_root::find_root;
@@ -27,27 +26,27 @@ use crate::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2, Vector3};
 use std::f64::consts::TAU;
 
-/// The rays found.
+/// The rays found, and whether they are all.
 pub(crate) struct AtOnce {
     pub rays: Vec<Turning>,
-    /// They are all.
+    /// Whether these are all rays.
     pub complete: bool,
 }
 
-/// Combinations of what each contact alone would do from which the sweeps start.
+/// Largest number of combinations of the contacts' separate solutions from which the sweeps start.
 const MOST_STARTS: u64 = 64;
-/// Sweeps from one start.
+/// Largest number of sweeps from one start.
 const MOST_SWEEPS: usize = 2000;
-/// Change of a sweep, over the largest velocity, from which Newton's method goes on.
+/// Change in a sweep, relative to the largest velocity, from which Newton's method takes over.
 const SETTLED: f64 = 1e-6;
-/// Newton iterations.
+/// Largest number of Newton iterations.
 const MOST_ITERATIONS: usize = 30;
-/// Rates below this, relative, are zero.
+/// Relative magnitude below which rates count as zero.
 const WEAK: f64 = 1e-9;
-/// Coefficients below this, relative, are none.
+/// Relative magnitude below which coefficients count as zero.
 const ROUND_OFF: f64 = 1e-12;
 
-/// What a touching node does.
+/// The behaviour of a touching node.
 #[derive(Clone, Copy, PartialEq)]
 enum Own {
     Stick,
@@ -55,7 +54,7 @@ enum Own {
     Slip { angle: f64 },
 }
 
-/// Every ray that the sweeps lead to, along which touching entities slip.
+/// The rays found by the sweeps along which touching entities slip.
 pub(crate) fn slips(problem: &RateProblem, touches: &[Touch], cancel: &CancelFlag) -> AtOnce {
     let nothing = AtOnce { rays: Vec::new(), complete: false };
     let Some(rising) = rising(problem) else { return nothing };
@@ -97,24 +96,24 @@ pub(crate) fn slips(problem: &RateProblem, touches: &[Touch], cancel: &CancelFla
 struct TouchingNode<'a> {
     touch: &'a Touch,
     columns: [usize; 3],
-    /// Reaction rates for its own velocities, (normal, first tangent, second tangent).
+    /// Reaction rates per unit of the node's own velocities, (normal, first tangent, second tangent).
     stiffness: Matrix3<f64>,
 }
 
-/// What one node does with the others as they are.
+/// A solution of one node with the others fixed.
 #[derive(Clone, Copy)]
 struct NodeSolution {
     own: Own,
     velocity: Vector3<f64>,
 }
 
-/// What every entity does: an option, or what a touching node does.
+/// The behaviour of every entity: an option, or that of a touching node.
 struct OptionPattern {
     chosen: Vec<usize>,
     own: Vec<Own>,
 }
 
-/// An equation's derivative by the weights, and by the angle in a column.
+/// The derivatives of an equation: with respect to the weights, and to the angle in a column.
 type EquationGradient = (DVector<f64>, Option<(usize, f64)>);
 
 struct SlipEquations<'a> {
@@ -125,7 +124,7 @@ struct SlipEquations<'a> {
 }
 
 impl<'a> SlipEquations<'a> {
-    /// `None` where some entity is no plain contact.
+    /// The equations of a problem; `None` where some entity is not a plain contact.
     fn new(problem: &'a RateProblem, touches: &'a [Touch]) -> Option<Self> {
         let node = |touch: &'a Touch| {
             let [normal, first, second] = touch.velocities.map(|form| own_column(problem, form));
@@ -142,8 +141,8 @@ impl<'a> SlipEquations<'a> {
         Some(Self { problem, nodes, others })
     }
 
-    /// Whether there are touching nodes only, none of which feels another, and each of which resists any slip: then
-    /// nothing moves without the load, and what each does alone is all that it may do.
+    /// Whether there are touching nodes only, uncoupled, and each resists any slip: then nothing moves without the
+    /// load, and the solutions of each node alone are all its solutions.
     fn is_decoupled(&self) -> bool {
         let last = self.problem.weights() - 1;
         let apart = |node: &TouchingNode<'_>| {
@@ -155,7 +154,7 @@ impl<'a> SlipEquations<'a> {
         self.others.is_empty() && self.nodes.iter().all(|node| apart(node) && node.resists())
     }
 
-    /// Sweeps until nothing changes much.
+    /// Sweeps until the velocities settle.
     fn swept(&self, mut weights: DVector<f64>, cancel: &CancelFlag) -> Option<(OptionPattern, DVector<f64>)> {
         let mut pattern =
             OptionPattern { chosen: vec![0; self.problem.entities.len()], own: vec![Own::Stick; self.nodes.len()] };
@@ -188,7 +187,7 @@ impl<'a> SlipEquations<'a> {
         None
     }
 
-    /// Newton's method on weights and angles; the ray, if it satisfies all inequalities.
+    /// Applies Newton's method to weights and angles; returns the ray if it satisfies all inequalities.
     fn refined(&self, mut pattern: OptionPattern, mut weights: DVector<f64>) -> Option<Turning> {
         let count = weights.len();
         let mut smallest = f64::INFINITY;
@@ -217,7 +216,7 @@ impl<'a> SlipEquations<'a> {
         None
     }
 
-    /// Values and derivatives of what is zero under a pattern; the last weight is held.
+    /// Values and derivatives of the equations of a pattern; the last weight is fixed.
     fn equations(&self, pattern: &OptionPattern, weights: &DVector<f64>) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let count = weights.len();
         let angles = pattern.own.iter().filter(|own| matches!(own, Own::Slip { .. })).count();
@@ -285,7 +284,7 @@ impl<'a> SlipEquations<'a> {
             let velocity = node.velocity(&weights);
             let forces = node.forces(self.problem, &weights);
             let traction = forces.fixed_rows::<2>(1).norm();
-            // What may not be negative, over what counts as zero.
+            // The quantity that must not be negative, relative to the tolerance for zero.
             let least = match own {
                 Own::Stick => (node.touch.friction * forces[0] - traction) / force,
                 Own::Free => velocity[0] / WEAK,
@@ -293,13 +292,13 @@ impl<'a> SlipEquations<'a> {
                     (node.touch.motion(self.problem, &weights, *angle) / WEAK).min(forces[0] / force)
                 }
             };
-            // A slip that is just none is a stick, or no contact.
+            // A slip within the tolerance is stick, or separation.
             let bound = if matches!(own, Own::Slip { .. }) { 1.0 } else { -1.0 };
             if least < bound {
                 return None;
             }
             weak |= least <= 1.0;
-            // A slipping node is pressed as one that sticks.
+            // A slipping node is pressed like a sticking node.
             chosen[node.touch.entity] = usize::from(*own == Own::Free);
             if let Own::Slip { angle } = own {
                 slips.push((node.touch.entity, [angle.cos(), angle.sin()]));
@@ -337,7 +336,7 @@ impl TouchingNode<'_> {
         Vector3::from(self.touch.forces.map(|form| problem.forms.row(form).transpose().dot(weights)))
     }
 
-    /// Tangential stiffness, and the normal one against tangential motion.
+    /// The tangential stiffness, and the normal stiffness against tangential motion.
     fn parts(&self) -> (Matrix2<f64>, Vector2<f64>) {
         (self.stiffness.fixed_view::<2, 2>(1, 1).into_owned(), self.stiffness.fixed_view::<1, 2>(0, 1).transpose())
     }
@@ -356,7 +355,7 @@ impl TouchingNode<'_> {
         least > self.touch.friction * normal.norm() && symmetric.symmetric_eigenvalues().min() > 0.0
     }
 
-    /// All that the node may do with the others as they are.
+    /// All solutions of the node with the others fixed.
     fn solutions(&self, problem: &RateProblem, weights: &DVector<f64>) -> Vec<NodeSolution> {
         let mut held = weights.clone();
         self.columns.iter().for_each(|column| held[*column] = 0.0);

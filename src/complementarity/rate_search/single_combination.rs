@@ -1,4 +1,4 @@
-//! Examining combinations: each one's exact line, and the rays that it holds.
+//! The examination of combinations: the exact line of each combination, and the rays on it.
 
 use crate::complementarity::rate_search::branch_and_bound::{BranchAndBound, Ray};
 use crate::complementarity::rates::combinations::{combinations, count};
@@ -6,22 +6,22 @@ use crate::complementarity::rates::ray;
 use crate::complementarity::rates::ray::{Along, Line};
 use nalgebra::DVector;
 
-/// Combinations of options in doubt that are tried on one line, beside those that violations lead to.
+/// Largest number of combinations of options in doubt tried on one line, in addition to those suggested by violations.
 const MOST_LABELS: u64 = 64;
-/// Bases kept of such sets.
+/// Largest number of stored bases of solution sets of more than one dimension.
 const MOST_PLANES: usize = 256;
-/// Rays closer than this, relative to their largest weight, are one.
+/// Rays closer than this, relative to their largest weight, are equal.
 const SAME: f64 = 1e-9;
 
-/// What one combination turned out to be.
+/// The result of the examination of one combination.
 pub(crate) enum Examined {
     /// Feasible in one sense or both.
     Rays,
-    /// One line, and the entities that it violates in the sense that violates fewer.
+    /// One line without a ray, and the entities violated in the sense with fewer violations.
     Violated(Vec<usize>),
     /// No line, or more than one.
     Nothing,
-    /// Known already.
+    /// Examined before.
     Before,
 }
 
@@ -75,17 +75,17 @@ fn keep(search: &mut BranchAndBound<'_>, chosen: &[usize], weights: DVector<f64>
     if !search.findings.rays.iter().any(|ray| (&ray.weights - &weights).amax() <= SAME * size) {
         let fitting = along.fitting(chosen);
         let weak = along.is_weak(&fitting);
-        // A list of its own for each entity, twice.
+        // Two lists for each entity.
         search.held.add::<f64>(weights.len() + 8 * chosen.len());
         let in_doubt = along.in_doubt(chosen);
         search.findings.rays.push(Ray { weights, fitting, in_doubt, weak });
     }
 }
 
-/// Examines the combinations of the options given for each entity, which all fit one line, hold first.
+/// Examines the combinations of the given options of each entity, which all fit one line, with held options first.
 ///
-/// Where many options are in doubt there are too many combinations to try: what the first one violates is changed,
-/// and so on until a combination holds.
+/// Where many options are in doubt there are too many combinations to try: the options of the violated entities are
+/// changed until a combination is feasible.
 pub(crate) fn examine_all(search: &mut BranchAndBound<'_>, options: &[Vec<usize>]) {
     let mut places = vec![0; options.len()];
     let mut settled = false;
@@ -94,7 +94,7 @@ pub(crate) fn examine_all(search: &mut BranchAndBound<'_>, options: &[Vec<usize>
         settled |= search.findings.rays.iter().any(|ray| ray.is_under(&chosen));
         match examine(search, &chosen) {
             Examined::Violated(violated) => {
-                // One that has no other option refutes them all.
+                // A violated entity without another option refutes all combinations.
                 settled |= violated.iter().any(|&entity| options[entity].len() == 1);
                 if settled {
                     break;
@@ -113,7 +113,7 @@ pub(crate) fn examine_all(search: &mut BranchAndBound<'_>, options: &[Vec<usize>
         let known = search.findings.rays.iter().find(|ray| ray.is_under(&chosen));
         match known.map(|ray| -&ray.weights) {
             None => settled |= matches!(examine(search, &chosen), Examined::Rays),
-            // Its line is the known one; the other sense may be feasible under this combination only.
+            // The line is the known one; its other sense may be feasible under this combination only.
             Some(reversed) => {
                 let along = ray::forms_along(search.problem, &reversed);
                 if along.violated(&chosen).is_empty() {

@@ -1,4 +1,4 @@
-//! Slip that begins at a touch in space: its direction is unknown.
+//! Onset of slip at a touching contact in space, in an unknown direction.
 //!
 //! With `v` the velocity and `Ṙ` the rate of the force on a node that touches without reaction,
 //!
@@ -6,11 +6,12 @@
 //! v_n = 0,    v_t = λ d,  λ >= 0,    Ṙ_t = -μ Ṙ_n d,  Ṙ_n >= 0,    |d| = 1
 //! ```
 //!
-//! For a given angle of `d` all but `d⊥·Ṙ_t = 0` are linear forms; the rays under the equations are found as any others,
-//! and the angles at which the remaining form vanishes on one of them by scanning the circle and Chandrupatla's method.
-//! The node's own inequalities are looked at there only: the angles at which they hold may be a sliver (a node that
-//! comes down almost along the obstacle is hardly pressed). With one such node this finds every slip that a scan of the circle tells apart. Of several, each is taken here to begin to
-//! slip while the others stick or leave; `simultaneous_slips` finds those that begin at once.
+//! For a given angle of `d`, all conditions except `d⊥·Ṙ_t = 0` are linear forms; the rays under these conditions are
+//! found like any others, and the angles at which the remaining form vanishes on a ray by scanning the circle and by
+//! Chandrupatla's method. The node's own inequalities are tested only at these angles: the range of angles in which
+//! they hold may be narrow (a node that approaches at grazing incidence is hardly pressed). With one such node this
+//! finds every slip that the scan of the circle resolves. With several, each in turn begins to slip while the others
+//! stick or separate; `simultaneous_slips` finds simultaneous onsets.
 
 use crate::algebra::scalar_root::find_root;
 use crate::complementarity::rate_search::branch_and_bound::{Effort, Ray, explore};
@@ -20,11 +21,11 @@ use crate::resources::budget;
 use nalgebra::DVector;
 use std::f64::consts::TAU;
 
-/// Angles at which the circle is scanned.
+/// Number of angles at which the circle is scanned.
 pub(crate) const SECTORS: usize = 64;
 /// Least cosine between the motions of rays at neighbouring angles that belong together.
 const TOGETHER: f64 = 0.9;
-/// Misfit (over the force rates) at which an angle is a root.
+/// Misfit (relative to the force rates) up to which an angle is a root.
 const ROOT: f64 = 1e-9;
 
 /// A ray along which entities begin to slip.
@@ -40,7 +41,7 @@ pub(crate) struct Touch {
     pub velocities: [usize; 3],
     pub forces: [usize; 3],
     pub friction: f64,
-    /// Forms that are not negative while it slips: gaps of other obstacles of the node.
+    /// Forms that are nonnegative while the entity slips: gaps of other obstacles of the node.
     pub opening: Vec<usize>,
 }
 
@@ -90,7 +91,7 @@ fn cosine(problem: &RateProblem, first: &Ray, second: &Ray) -> f64 {
 }
 
 impl Touch {
-    /// Of an entity whose options are stick and free.
+    /// The forms of an entity with the options stick and free; `None` for other entities.
     pub fn of(problem: &RateProblem, entity: usize, friction: f64) -> Option<Self> {
         let [stick, free] = &problem.entities[entity].options[..] else { return None };
         let three = |forms: &[usize]| <[usize; 3]>::try_from(forms).ok();
@@ -103,7 +104,7 @@ impl Touch {
         })
     }
 
-    /// The rays for one angle, and how far the traction is from the direction, over the size of the force rates.
+    /// The rays for one angle, each with the deviation of the traction from the direction, relative to the force rates.
     fn rays(&self, problem: &RateProblem, angle: f64, effort: Effort<'_>) -> Vec<(Ray, f64)> {
         let copied = problem.forms.len() + problem.motion.len() + problem.reactions.len();
         let _held = budget::take::<f64>(copied);
@@ -145,7 +146,7 @@ impl Touch {
         findings.rays.into_iter().map(with_misfit).collect()
     }
 
-    /// Whether the node moves along the direction, otherwise it sticks, and is pressed, otherwise it is free.
+    /// Whether the node moves along the direction (otherwise it sticks) and is pressed (otherwise it is free).
     fn is_slip(&self, problem: &RateProblem, ray: &Ray, angle: f64) -> bool {
         let value = |form: usize| problem.forms.row(form).transpose().dot(&ray.weights);
         let size = (&problem.reactions * &ray.weights).amax().max(f64::MIN_POSITIVE);
@@ -153,8 +154,8 @@ impl Touch {
         self.motion(problem, &ray.weights, angle) > ROOT && value(self.forces[0]) > ROOT * size && opens
     }
 
-    /// How clearly the node moves along a direction, dimensionless: by its velocity, or, of a node on stiff supports, which
-    /// is slow, by what that velocity changes in its own forces.
+    /// A dimensionless measure of the node's motion along a direction: its velocity, or, for a slow node on stiff
+    /// supports, the change of its own forces by this velocity.
     pub(crate) fn motion(&self, problem: &RateProblem, weights: &DVector<f64>, angle: f64) -> f64 {
         let value = |form: usize| problem.forms.row(form).transpose().dot(weights);
         let parts = [angle.cos(), angle.sin()];

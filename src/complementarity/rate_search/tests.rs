@@ -32,7 +32,7 @@ fn plane_is_wide(problem: &RateProblem, chosen: &[usize], basis: &DMatrix<f64>) 
     inequalities.is_empty() || inside.iter().any(|a| inside.iter().any(|b| (a[0] * b[1] - a[1] * b[0]).abs() > 1e-6))
 }
 
-/// Every combination, one after another.
+/// Examines every combination in turn.
 pub(crate) fn every_combination(problem: &RateProblem) -> Findings {
     let mut findings = Findings::default();
     let options: Vec<Vec<usize>> = problem.entities.iter().map(|entity| (0..entity.options.len()).collect()).collect();
@@ -76,7 +76,7 @@ impl Random {
         self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
     }
 
-    /// Between -1 and 1.
+    /// A number between -1 and 1.
     pub fn value(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
@@ -86,7 +86,7 @@ impl Random {
     }
 }
 
-/// What kind of numbers a problem is made of.
+/// The kind of coefficients of a problem.
 #[derive(Clone, Copy, Debug)]
 enum Numbers {
     Real,
@@ -159,7 +159,7 @@ fn random_problem(random: &mut Random, kinds: &[bool], numbers: Numbers) -> Rate
     }
 }
 
-/// Every ray of one list is in the other; a list may name one motion under several combinations.
+/// Checks that every ray of one list is in the other; a list may contain one motion under several combinations.
 fn compare(problem: &RateProblem, found: &Findings, exact: &Findings, what: &str) {
     assert_eq!(found.unexplored, 0, "{what}");
     let near = |a: &Ray, b: &Ray| (&a.weights - &b.weights).norm() <= 1e-7;
@@ -218,7 +218,8 @@ fn inequalities_that_hold_with_equality_as_by_enumeration() {
     check(0..400, 3, Numbers::Small, true);
 }
 
-/// Where the search is cut Lemke's method goes on: all it names are rays by plain enumeration, and it finds most of them.
+/// Where the search is cut short, Lemke's method continues: all its results are rays by plain enumeration, and it finds
+/// most rays.
 #[test]
 fn what_complementary_pivoting_names_is_among_all_rays() {
     let (mut named, mut missed, mut both) = (0, 0, 0);
@@ -242,12 +243,12 @@ fn what_complementary_pivoting_names_is_among_all_rays() {
         };
         both += usize::from(loads(1.0) && loads(-1.0));
     }
-    // Of general matrices many runs end on a secondary ray.
+    // For general matrices many runs end on a secondary ray.
     assert!(named > 700 && 10 * named > 9 * missed, "{named} named, {missed} missed");
     assert!(both > 100, "{both}");
 }
 
-/// Many contacts, and a search of so few nodes that it ends before it has found anything much.
+/// Many contacts, and a search limited to so few nodes that it finds little.
 #[test]
 fn complementary_pivoting_finds_what_a_cut_search_misses() {
     let (mut beyond, mut before) = (0, 0);
@@ -265,7 +266,7 @@ fn complementary_pivoting_finds_what_a_cut_search_misses() {
     assert!(beyond > 0 && beyond > before, "{beyond} beyond {before}");
 }
 
-/// Matrices that are definite but for one direction: most are settled without branching, and nothing is missed.
+/// Matrices that are definite except in one direction: most are solved without branching, and no ray is missed.
 #[test]
 fn one_pair_in_the_way_of_a_p_matrix_as_by_enumeration() {
     let mut settled = 0;
@@ -274,7 +275,7 @@ fn one_pair_in_the_way_of_a_p_matrix_as_by_enumeration() {
         let count = 1 + random.below(8) as usize;
         let kinds = vec![false; count];
         let mut problem = random_problem(&mut random, &kinds, Numbers::Stiffness(0.2));
-        // Softer along one direction, by more than it is stiff.
+        // Softened along one direction by more than the stiffness.
         let along = DVector::from_fn(count, |_, _| random.value());
         let softer = DMatrix::from_fn(count, count, |row, column| {
             // Force forms have odd places: see `random_problem`.

@@ -1,5 +1,5 @@
-//! Where the search need not branch: the certificate on the whole problem or on what is left at a node, and signs of the load
-//! rate that a known ray settles.
+//! Cases without branching: a certificate for the whole problem or for the rest of it at a node, and signs of the load
+//! rate settled by a known ray.
 
 use crate::complementarity::rate_search::branch_and_bound::{BranchAndBound, FITS, Ray, SearchNode};
 use crate::complementarity::rate_search::single_combination;
@@ -9,7 +9,7 @@ use crate::complementarity::rates::rate_problem::{Entity, Signed};
 use crate::resources::budget;
 use nalgebra::{DMatrix, DVector};
 
-/// The certificate on the whole problem.
+/// Applies the certificate to the whole problem; returns whether it succeeds.
 pub(crate) fn certified_at_once(search: &mut BranchAndBound<'_>) -> bool {
     if !search.effort.certify {
         return false;
@@ -26,7 +26,7 @@ pub(crate) fn certified_at_once(search: &mut BranchAndBound<'_>) -> bool {
     certified.is_some()
 }
 
-/// Forces, velocities and load rate over weights that each move by one.
+/// The coefficients of forces, velocities and load rate over weights scaled to unit motion.
 fn coordinates(search: &BranchAndBound<'_>, pairs: &[[Signed; 2]]) -> (DMatrix<f64>, DMatrix<f64>, Vec<f64>) {
     let motion = &search.problem.motion;
     budget::spend(motion.len() + 2 * pairs.len() * motion.ncols());
@@ -40,7 +40,7 @@ fn coordinates(search: &BranchAndBound<'_>, pairs: &[[Signed; 2]]) -> (DMatrix<f
     (rows(0), rows(1), load)
 }
 
-/// Signs of the load rate for which the problem is monotone and a ray is known that must then be the only one.
+/// Signs of the load rate for which the problem is monotone and a known ray is therefore unique.
 pub(crate) fn settled_signs(search: &BranchAndBound<'_>) -> Vec<f64> {
     let conjugates: Option<Vec<_>> = search.problem.entities.iter().map(Entity::conjugates).collect();
     let Some(conjugates) = conjugates else { return Vec::new() };
@@ -62,8 +62,8 @@ pub(crate) fn settled_signs(search: &BranchAndBound<'_>) -> Vec<f64> {
     [1.0, -1.0].into_iter().filter(|sign| strict(*sign)).collect()
 }
 
-/// Examines the one combination for each load rate given, if there is a certificate that it is the only one, or those
-/// that all rays are among. Whether each load rate has one; `None` where neither is certain.
+/// Examines the combination for each given load rate, if it is certified to be unique, or else a list of combinations
+/// that contains all rays. Returns whether each load rate has exactly one ray; `None` where neither is certain.
 fn examine_certified(
     search: &mut BranchAndBound<'_>,
     a: DMatrix<f64>,
@@ -85,7 +85,7 @@ fn examine_certified(
     Some(is_p)
 }
 
-/// The certificate on what is left at a node.
+/// Applies the certificate to the undecided entities at a node; returns whether it succeeds.
 pub(crate) fn certified_below(search: &mut BranchAndBound<'_>, node: &SearchNode, open: &[usize]) -> bool {
     let dictionary = &node.dictionary;
     if !search.effort.certify

@@ -1,15 +1,15 @@
-//! Combinations of one option from each of several lists, in one order for all who try them in turn.
+//! Combinations of one option from each of several lists, in one fixed order for all callers.
 
 use itertools::Itertools;
 
-/// How many there are, saturating.
+/// The number of combinations, saturating.
 pub(crate) fn count<T>(options: &[Vec<T>]) -> u64 {
     options.iter().fold(1, |total: u64, options| total.saturating_mul(options.len() as u64))
 }
 
-/// The first so many, the first list counting fastest; none where a list is empty.
+/// The first `most` combinations, with the first list varying fastest; none where a list is empty.
 pub(crate) fn combinations<T: Clone>(options: &[Vec<T>], most: u64) -> impl Iterator<Item = Vec<T>> {
-    // In a product the last list counts fastest.
+    // In a cartesian product the last list varies fastest.
     let product = options.iter().rev().map(|options| options.iter().cloned()).multi_cartesian_product();
     let most = usize::try_from(most).unwrap_or(usize::MAX);
     product.take(most).map(|mut combination| {

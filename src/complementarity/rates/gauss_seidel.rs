@@ -1,10 +1,11 @@
-//! A likely combination by sweeps over the entities, each solved by itself with the others as they are.
+//! A likely combination by sweeps over the entities, each solved with the others fixed.
 //!
 //! Nonlinear Gauss-Seidel for contact and friction (M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235,
-//! doi:10.1016/S0045-7825(98)00383-1), in velocities. Where the structure is stable it comes to the combination that
-//! goes on, however many contacts touch; what it gives is examined exactly like any other combination. Along a chain of
-//! contacts plain sweeps take a number that grows with the square of its length; they are over-relaxed (C. W. Cryer,
-//! SIAM J. Control 9 (1971) 385, doi:10.1137/0309028), and plain again where that does not settle.
+//! doi:10.1016/S0045-7825(98)00383-1), in velocities. For a stable structure the sweeps converge to the combination
+//! that continues the path, however many contacts touch; the result is examined exactly like any other combination.
+//! Along a chain of contacts the number of plain sweeps grows with the square of the chain's length; sweeps are
+//! therefore over-relaxed (C. W. Cryer, SIAM J. Control 9 (1971) 385, doi:10.1137/0309028), and plain where
+//! over-relaxation does not settle.
 
 use crate::complementarity::rates::rate_problem::{Entity, RateProblem, Touching};
 use crate::complementarity::rates::ray;
@@ -12,21 +13,21 @@ use crate::resources::budget;
 use crate::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector};
 
-/// Products that the sweeps of one sign of the load rate may take with one factor of relaxation.
+/// Largest number of multiplications in the sweeps of one sign of the load rate with one relaxation factor.
 const WORK: usize = 100_000_000;
-/// Sweeps without a change of any option after which the combination is looked at, the first time.
+/// Sweeps without a change of any option after which the combination is first examined.
 const UNCHANGED: usize = 30;
-/// Velocities this much larger than at first do not settle any more.
+/// Growth of the velocities from which the sweeps count as divergent.
 const GROWN: f64 = 1e9;
-/// Change of the largest velocity in a sweep, over that velocity, below which the sweeps have settled.
+/// Largest change of a velocity in a sweep, relative to the largest velocity, below which the sweeps have settled.
 const SETTLED: f64 = 1e-12;
-/// Factors of relaxation, tried one after another.
+/// Relaxation factors, tried in order.
 const RELAXATIONS: [f64; 3] = [1.9, 1.6, 1.0];
 
-/// A coefficient this small is none.
+/// A coefficient this small counts as zero.
 const ROUND_OFF: f64 = 1e-12;
 
-/// The combinations that the sweeps settle on, for a rising and a falling load; none where the entities are not plain
+/// The combinations on which the sweeps settle, for a rising and a falling load; none where the entities are not plain
 /// contacts or the sweeps do not settle.
 pub fn sweeps(problem: &RateProblem, cancel: &CancelFlag) -> Vec<Vec<usize>> {
     let Some(locals) = problem.entities.iter().map(|entity| Local::of(problem, entity)).collect::<Option<Vec<_>>>()
@@ -56,7 +57,7 @@ pub enum Local {
 }
 
 impl Local {
-    /// `None` where the entity is no plain contact.
+    /// `None` where the entity is not a plain contact.
     pub fn of(problem: &RateProblem, entity: &Entity) -> Option<Self> {
         let own = |form: usize| own_column(problem, form);
         match entity.touching {
@@ -78,7 +79,7 @@ impl Local {
         std::iter::once(first).chain(second)
     }
 
-    /// Puts the entity's velocities where its own conditions hold; its option.
+    /// Sets the entity's velocities such that its own conditions hold; returns its option.
     pub fn solve(&self, forms: &DMatrix<f64>, weights: &mut DVector<f64>) -> Option<usize> {
         let value = |form: usize, weights: &DVector<f64>| -> f64 {
             (0..weights.len()).map(|column| forms[(form, column)] * weights[column]).sum()
@@ -128,10 +129,10 @@ impl Local {
     }
 }
 
-/// The weight that a velocity is.
+/// The weight equal to a velocity form; `None` where there is no such weight.
 pub fn own_column(problem: &RateProblem, form: usize) -> Option<usize> {
     let row = problem.forms.row(form);
-    // One up to the rounding of a frame that is not along the axes.
+    // The coefficient is 1 up to the rounding of a frame that is not aligned with the axes.
     let mut filled = (0..row.len()).filter(|column| row[*column].abs() > ROUND_OFF);
     match (filled.next(), filled.next()) {
         (Some(column), None) if (row[column] - 1.0).abs() < ROUND_OFF => Some(column),
@@ -167,7 +168,7 @@ fn settle(
             *chosen = option;
             for (column, before) in local.columns().zip(before) {
                 let own = weights[column];
-                // What its own conditions hold at zero stays there, and nothing turns round.
+                // A velocity that its own conditions set to zero remains zero, and relaxation reverses no velocity.
                 let relaxed = before + relaxation * (own - before);
                 weights[column] = if own == 0.0 || relaxed * own <= 0.0 { own } else { relaxed };
                 change = change.max((own - before).abs());

@@ -1,17 +1,17 @@
-//! Solutions of the rate problem by Lemke's complementary pivot method, where the search was cut.
+//! Solutions of the rate problem by Lemke's complementary pivot method, where the search was cut short.
 //!
-//! With the velocities of the contacts and a load rate of 1 or -1 given, the forces that go with them are
+//! For given velocities of the contacts and a load rate of 1 or -1, the forces are
 //!
 //! ```text
 //! w = q + M z,      0 <= w ⊥ z >= 0
 //! on the cone: (w, z) = (slack, slip)      touching: (ṙ_n, ġ), (μ ṙ_n + ṙ_t, v⁺), (μ ṙ_n - ṙ_t, v⁻),   v = v⁺ - v⁻
 //! ```
 //!
-//! (A. Klarbring, Ing. Arch. 60 (1990) 529). A covering vector `d > 0` with its own variable `z0` makes a feasible basis;
-//! the complement of what left enters, until `z0` leaves (a solution) or nothing does (a secondary ray: none found). Ties
-//! are broken lexicographically, so that no basis repeats (R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear
-//! Complementarity Problem*, 1992, section 4.4 and 4.9). Different covering vectors may lead to different solutions.
-//! Each names a combination, which is examined exactly like any other.
+//! (A. Klarbring, Ing. Arch. 60 (1990) 529). A covering vector `d > 0` with its own variable `z0` gives a feasible
+//! basis; the complement of the variable that left enters, until `z0` leaves (a solution) or no variable can leave (a
+//! secondary ray: no solution found). Ties are broken lexicographically, so that no basis repeats (R. W. Cottle, J.-S.
+//! Pang, R. E. Stone, *The Linear Complementarity Problem*, 1992, section 4.4 and 4.9). Different covering vectors may
+//! lead to different solutions. Each solution gives a combination, which is examined exactly like any other.
 
 use crate::complementarity::rates::gauss_seidel::{Local, rising};
 use crate::complementarity::rates::rate_problem::RateProblem;
@@ -20,15 +20,15 @@ use crate::resources::cancel::CancelFlag;
 use nalgebra::DMatrix;
 use std::collections::BTreeSet;
 
-/// Covering vectors for each sign of the load rate, at most.
+/// Largest number of covering vectors for each sign of the load rate.
 const MOST_COVERS: usize = 12;
-/// Pivots for each covering vector, over the number of pairs.
+/// Largest number of pivots for each covering vector, per pair.
 const MOST_PIVOTS: usize = 10;
-/// Entries of tables that all pivots of one call may change; what is left is not tried.
+/// Largest number of tableau entries that all pivots of one call may change; further covering vectors are not tried.
 const WORK: usize = 2_000_000_000;
-/// Coefficients (of rows and columns of about unit size) below this are no pivots.
+/// Coefficients (of rows and columns of about unit size) below this are not used as pivots.
 const NOTHING: f64 = 1e-11;
-/// Ratios closer than this, relative to their size, tie.
+/// Ratios closer than this, relative to their magnitude, are ties.
 const TIE: f64 = 1e-12;
 
 /// A force, and the weight (with a sign) that is its complement.
@@ -38,7 +38,7 @@ struct Pair {
     sign: f64,
 }
 
-/// The combinations that Lemke's method ends in, each once; none where the entities are not plain contacts.
+/// The combinations found by Lemke's method, each once; none where the entities are not plain contacts.
 pub fn lemke(problem: &RateProblem, cancel: &CancelFlag) -> Vec<Vec<usize>> {
     let locals: Option<Vec<Local>> = problem.entities.iter().map(|entity| Local::of(problem, entity)).collect();
     let (Some(locals), Some(rising)) = (locals, rising(problem)) else { return Vec::new() };
@@ -76,7 +76,7 @@ fn pairs_of(local: &Local) -> Vec<Pair> {
     }
 }
 
-/// `M` and the coefficients of the load rate; velocities move by one each, rows have unit size.
+/// `M` and the coefficients of the load rate; velocities are scaled to unit motion, rows to unit maximum norm.
 fn coefficients(problem: &RateProblem, pairs: &[Pair]) -> (DMatrix<f64>, Vec<f64>) {
     let last = problem.weights() - 1;
     let scale = |column: usize| 1.0 / problem.motion.column(column).norm().max(f64::MIN_POSITIVE);
@@ -95,7 +95,8 @@ fn coefficients(problem: &RateProblem, pairs: &[Pair]) -> (DMatrix<f64>, Vec<f64
     (matrix, load)
 }
 
-/// Covering vectors, all positive: even, by the constants, weighted towards single pairs where the load breaks a bound.
+/// Positive covering vectors: uniform, by the constants, graded, and weighted towards single pairs where the load
+/// violates a bound.
 fn covers(constant: &[f64]) -> Vec<Vec<f64>> {
     let count = constant.len();
     let largest = constant.iter().fold(f64::MIN_POSITIVE, |largest, value| largest.max(value.abs()));
@@ -107,7 +108,7 @@ fn covers(constant: &[f64]) -> Vec<Vec<f64>> {
     ];
     let broken: Vec<usize> = (0..count).filter(|&index| constant[index] < 0.0).collect();
     let room = MOST_COVERS - covers.len();
-    // Spread over the pairs where there are more than room for.
+    // Distributed over the pairs where there are too many.
     for place in 0..room.min(broken.len()) {
         let mut cover = vec![1.0; count];
         cover[broken[place * broken.len() / room.min(broken.len())]] = 1e3;
@@ -116,7 +117,7 @@ fn covers(constant: &[f64]) -> Vec<Vec<f64>> {
     covers
 }
 
-/// The option of each entity by which of its velocities are basic.
+/// The option of each entity, from which of its velocities are basic.
 fn options(locals: &[Local], positive: &[bool]) -> Vec<usize> {
     let mut next = 0;
     let mut take = || {
@@ -137,7 +138,7 @@ fn options(locals: &[Local], positive: &[bool]) -> Vec<usize> {
         .collect()
 }
 
-/// `[w | z | z0 | q]`, a row for each basic variable; the columns of `w` hold the inverse of the basis.
+/// The tableau `[w | z | z0 | q]`, one row per basic variable; the columns of `w` hold the inverse of the basis.
 struct LemkeTableau {
     rows: DMatrix<f64>,
     basic: Vec<usize>,
@@ -161,12 +162,12 @@ impl LemkeTableau {
         Self { rows, basic: (0..count).collect(), _held: held }
     }
 
-    /// Which `z` are basic at the solution; `None` on a secondary ray, or where the bound on pivots is met.
+    /// Which `z` are basic at the solution; `None` on a secondary ray, or where the bound on pivots is reached.
     fn solve(mut self, left: &mut usize) -> Option<Vec<bool>> {
         let count = self.basic.len();
         let artificial = 2 * count;
         let answer = |basic: &[usize]| (0..count).map(|index| basic.contains(&(count + index))).collect();
-        // `z0` enters where it has to be largest: afterwards no basic variable is negative.
+        // `z0` enters in the row that requires the largest `z0`: afterwards no basic variable is negative.
         let first = (0..count)
             .filter(|&row| self.constant(row) < 0.0)
             .reduce(|best, row| if self.needs_more(row, best) { row } else { best });
@@ -200,7 +201,8 @@ impl LemkeTableau {
         ratio(row) > ratio(other)
     }
 
-    /// The row that leaves: least ratio, ties by the rows of the inverse, lexicographically; `z0` before all where it ties.
+    /// The row whose variable leaves: the smallest ratio, ties broken lexicographically by the rows of the inverse; of
+    /// several in a tie, `z0` leaves first.
     fn leaving(&self, entering: usize) -> Option<usize> {
         let count = self.basic.len();
         let size = (0..count).fold(0.0_f64, |size, row| size.max(self.rows[(row, entering)].abs()));
@@ -230,7 +232,7 @@ impl LemkeTableau {
         (0..count).find_map(compare).unwrap_or(false)
     }
 
-    /// Makes a column basic in a row; the variable that leaves.
+    /// Makes a column basic in a row; returns the variable that leaves.
     fn pivot(&mut self, row: usize, column: usize) -> usize {
         let inverse = 1.0 / self.rows[(row, column)];
         self.rows.row_mut(row).scale_mut(inverse);

@@ -4,13 +4,13 @@
 //! |---|---|
 //! | `rate_problem` | forms, entities, options |
 //! | `ray` | the exact ray of one combination of options, and whether its inequalities hold |
-//! | `simplex_dictionary` | whether anything but zero is left when some entities are decided (linear programming) |
-//! | `p_matrix` | a sufficient test that each sign of the load rate has exactly one ray, and those rays |
-//! | `parametric_lcp` | all rays where one pair stands in the way of that test |
+//! | `simplex_dictionary` | whether more than zero remains when some entities are decided (linear programming) |
+//! | `p_matrix` | a sufficient test that each sign of the load rate has exactly one ray, and these rays |
+//! | `parametric_lcp` | all rays where one pair makes this test fail |
 //! | `lemke` | complementary pivoting |
 //! | `gauss_seidel` | a likely combination for each sign of the load rate |
-//! | `warm_start` | combinations that a known vector of weights points to |
-//! | `combinations` | one of each of several lists, in one order |
+//! | `warm_start` | combinations suggested by a known vector of weights |
+//! | `combinations` | combinations of one item from each of several lists, in a fixed order |
 
 pub(crate) mod combinations;
 pub(crate) mod gauss_seidel;

@@ -1,6 +1,6 @@
-//! A cheap sufficient test that each sign of the load rate has exactly one ray, and those rays.
+//! A cheap sufficient test that each sign of the load rate has exactly one ray, and these rays.
 //!
-//! Where all that is open are complementary pairs `0 <= a ⊥ b >= 0` and the `b` with the load rate are coordinates,
+//! Where only complementary pairs `0 <= a ⊥ b >= 0` are undecided, and `b` and the load rate are coordinates,
 //!
 //! ```text
 //! a = M b + q ṡ
@@ -8,12 +8,12 @@
 //!
 //! is a linear complementarity problem for `ṡ = 1` and another for `ṡ = -1`. Each has exactly one solution if (and, for
 //! all `q`, only if) `M` is a P-matrix (Cottle, Pang, Stone, theorem 3.3.7); for `ṡ = 0` the solution is `b = 0`, no
-//! motion. `M` is a P-matrix when its symmetric part is positive definite (`bᵀ M b > 0` for two solutions' difference
-//! contradicts complementarity), or when its comparison matrix (`|M_ii|` on, `-|M_ij|` off the diagonal) has a positive
-//! vector that it makes positive, its diagonal being positive (theorem 3.3.15: an H-matrix with positive diagonal).
-//! Rows and columns may be scaled by positive numbers first: signs and complementarity do not change. For friction, `b` are slip
-//! velocities and `a` the rates at which the tractions fall back from the cone: `M` is the stiffness as slip feels it
-//! (A. Klarbring, Ing. Arch. 60 (1990) 529). Nothing is claimed where the tests fail.
+//! motion. `M` is a P-matrix when its symmetric part is positive definite (`bᵀ M b > 0` for the difference `b` of two
+//! solutions contradicts complementarity), or when its diagonal is positive and its comparison matrix (`|M_ii|` on,
+//! `-|M_ij|` off the diagonal) maps a positive vector to a positive vector (theorem 3.3.15: an H-matrix with positive
+//! diagonal). Rows and columns may be scaled by positive numbers first: signs and complementarity do not change. For
+//! friction, `b` are slip velocities and `a` the rates at which the tractions retreat from the cone: `M` is the
+//! stiffness against slip (A. Klarbring, Ing. Arch. 60 (1990) 529). Nothing is claimed where the tests fail.
 //!
 //! The solution is found by block principal pivoting with a safeguard (L. F. Portugal, J. J. Júdice, L. N. Vicente,
 //! Math. Comp. 63 (1994) 625, doi:10.1090/S0025-5718-1994-1250776-4; the safeguard is K. G. Murty's least-index method,
@@ -25,7 +25,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// Rounds without progress before the least-index method takes over.
 const PATIENCE: usize = 8;
-/// Margin by which a matrix has to be positive definite or dominant, relative to its size: beyond round-off.
+/// Margin by which a matrix has to be positive definite or dominant, relative to its magnitude: beyond round-off.
 const MARGIN: f64 = 1e-10;
 /// Entries below this fraction of the largest are round-off.
 const ROUND_OFF: f64 = 1e-12;
@@ -33,20 +33,20 @@ const ROUND_OFF: f64 = 1e-12;
 const VANISHING: f64 = 1e-9;
 /// Values below this fraction of the largest are zero.
 const WEAK_VALUE: f64 = 1e-7;
-/// Where the largest value is smaller than this (at a load rate of 1), all may be round-off.
+/// Where the largest value is smaller than this (at a load rate of 1), all values may be round-off.
 const LEAST_SIZE: f64 = 1e-5;
 
-/// `a = M b + q ṡ` with a P-matrix.
+/// The problem `a = M b + q ṡ` with a P-matrix `M`.
 pub struct Certified {
     matrix: DMatrix<f64>,
     load: DVector<f64>,
 }
 
-/// `a` and `b` of each pair.
+/// The values `a` and `b` of each pair.
 pub type Pairs = Vec<[f64; 2]>;
 
 /// Brings rows of coefficients `(a, b, load rate)` over `k + 1` coordinates to the form `a = M b + q ṡ`; `None` where
-/// `b` and the load rate are no coordinates.
+/// `b` and the load rate are not coordinates.
 pub fn reduce(a: &DMatrix<f64>, b: &DMatrix<f64>, load: &[f64]) -> Option<(DMatrix<f64>, DVector<f64>)> {
     let count = b.nrows();
     if b.ncols() != count + 1 || load.len() != count + 1 {
@@ -56,7 +56,7 @@ pub fn reduce(a: &DMatrix<f64>, b: &DMatrix<f64>, load: &[f64]) -> Option<(DMatr
     let mut coordinates = DMatrix::zeros(count + 1, count + 1);
     coordinates.rows_mut(0, count).copy_from(b);
     coordinates.row_mut(count).copy_from_slice(load);
-    // The forms have unit size: what is left of one that vanishes is round-off.
+    // The forms have unit size: the entries of a vanishing form are round-off.
     if coordinates.row_iter().any(|row| row.amax() <= VANISHING) {
         return None;
     }
@@ -77,7 +77,7 @@ pub fn reduce(a: &DMatrix<f64>, b: &DMatrix<f64>, load: &[f64]) -> Option<(DMatr
 }
 
 impl Certified {
-    /// `None` where neither test succeeds.
+    /// Tests whether the matrix is a P-matrix; `None` where neither test succeeds.
     pub fn new(mut matrix: DMatrix<f64>, mut load: DVector<f64>) -> Option<Self> {
         let scales = scales(&matrix, |row| load[row].abs())?;
         scale(&mut matrix, &scales);
@@ -85,19 +85,19 @@ impl Certified {
         is_p_matrix(&matrix).then_some(Self { matrix, load })
     }
 
-    /// The one solution for a load rate.
+    /// The unique solution for a load rate.
     pub fn solve(&self, load_rate: f64) -> Option<Pairs> {
         let constant = &self.load * load_rate;
         solve_complementarity(&self.matrix, &constant)
     }
 }
 
-/// Whether `a = M b + q ṡ` is monotone where friction's bounds do not depend on `b`: symmetric part positive semidefinite
-/// to round-off, and no entry in the rows of pressing forces that bound friction.
+/// Whether `a = M b + q ṡ` is monotone with bounds of friction that do not depend on `b`: symmetric part positive
+/// semidefinite to round-off, and no entry in the rows of pressing forces that bound friction.
 ///
 /// For a given `ṡ` the contacts' rate problem is then a monotone variational inequality on a fixed polyhedron, and its
-/// solutions form a convex set (D. Kinderlehrer and G. Stampacchia, *An Introduction to Variational Inequalities*, 1980,
-/// chapter III): one that is isolated, with every inequality strict and its equations regular, is the only one.
+/// solutions form a convex set (D. Kinderlehrer and G. Stampacchia, *An Introduction to Variational Inequalities*,
+/// 1980, chapter III): an isolated solution, with every inequality strict and regular equations, is unique.
 pub fn is_monotone(matrix: &DMatrix<f64>, bounds: &[usize]) -> bool {
     let size = matrix.amax();
     if !size.is_finite() || bounds.iter().any(|&row| matrix.row(row).amax() > ROUND_OFF * size) {
@@ -110,8 +110,8 @@ pub fn is_monotone(matrix: &DMatrix<f64>, bounds: &[usize]) -> bool {
     size == 0.0 || has_cholesky(&symmetric, 0.0)
 }
 
-/// Factors of rows and columns that make every diagonal entry 1: a congruence, so that definiteness stays. `None` where
-/// one is not positive by more than round-off, of its row or of what else there is in the row.
+/// Scale factors of rows and columns that make every diagonal entry 1: a congruence, which preserves definiteness.
+/// `None` where a diagonal entry does not exceed the round-off of its row, or of the further terms `beside` it.
 pub(crate) fn scales(matrix: &DMatrix<f64>, beside: impl Fn(usize) -> f64) -> Option<DVector<f64>> {
     let mut sizes = vec![0.0_f64; matrix.nrows()];
     for column in matrix.column_iter() {
@@ -143,19 +143,20 @@ pub fn is_definite(mut matrix: DMatrix<f64>) -> bool {
     is_positive_definite(&matrix)
 }
 
-/// Symmetric part positive definite, with a margin: by a Cholesky factorisation within the profile, so that a matrix with
-/// a narrow band costs no more than its band (A. Jennings, Comput. J. 9 (1966) 281, doi:10.1093/comjnl/9.3.281).
+/// Whether the symmetric part is positive definite, with a margin: by a Cholesky factorisation within the profile, so
+/// that a matrix with a narrow band costs no more than its band (A. Jennings, Comput. J. 9 (1966) 281,
+/// doi:10.1093/comjnl/9.3.281).
 fn is_positive_definite(matrix: &DMatrix<f64>) -> bool {
     let size = matrix.amax();
     size.is_finite() && has_cholesky(matrix, MARGIN * size)
 }
 
-/// Whether the Cholesky factorisation of the symmetric part exists with so much taken from every pivot.
+/// Whether the Cholesky factorisation of the symmetric part exists with `margin` subtracted from every pivot.
 fn has_cholesky(matrix: &DMatrix<f64>, margin: f64) -> bool {
     let count = matrix.nrows();
     let mut held = Taken::default();
     let mut factor: Vec<f64> = Vec::with_capacity(count);
-    // First column and place of each row.
+    // First column of each row, and its place in the factor.
     let mut rows: Vec<(usize, usize)> = Vec::with_capacity(count);
     let entry = |row: usize, column: usize| 0.5 * (matrix[(row, column)] + matrix[(column, row)]);
     for row in 0..count {
@@ -184,7 +185,7 @@ fn has_cholesky(matrix: &DMatrix<f64>, margin: f64) -> bool {
     true
 }
 
-/// The comparison matrix has a positive vector with positive image.
+/// Whether the comparison matrix maps some positive vector to a positive vector.
 fn is_dominant(matrix: &DMatrix<f64>) -> bool {
     let mut comparison = matrix.map(|value| -value.abs());
     comparison.fill_diagonal(0.0);
@@ -197,7 +198,7 @@ fn is_dominant(matrix: &DMatrix<f64>) -> bool {
     (comparison * vector).iter().all(|value| *value > 0.5)
 }
 
-/// `a = M b + q`, `0 <= a ⊥ b >= 0`, by block principal pivoting; `None` where it does not end.
+/// Solves `a = M b + q`, `0 <= a ⊥ b >= 0` by block principal pivoting; `None` where the iteration does not end.
 pub fn solve_complementarity(matrix: &DMatrix<f64>, constant: &DVector<f64>) -> Option<Pairs> {
     let count = constant.len();
     let mut active = vec![false; count];
@@ -247,7 +248,7 @@ fn basic_solution(matrix: &DMatrix<f64>, constant: &DVector<f64>, active: &[bool
     Some((0..active.len()).map(|index| if active[index] { [0.0, b[index]] } else { [a[index], 0.0] }).collect())
 }
 
-/// Which of a pair's two options hold at a solution: the first (`b = 0`), the second (`a = 0`), or both.
+/// The options of each pair that hold at a solution: the first (`b = 0`), the second (`a = 0`), or both.
 pub fn options_of(pairs: &Pairs) -> Vec<Vec<usize>> {
     let largest =
         pairs.iter().fold([LEAST_SIZE; 2], |size, pair| [size[0].max(pair[0].abs()), size[1].max(pair[1].abs())]);

@@ -1,40 +1,42 @@
-//! All solutions of a linear complementarity problem whose load rate is free, where one pair stands in the way of a P-matrix.
+//! All solutions of a linear complementarity problem with a free load rate whose matrix is a P-matrix except for one
+//! pair.
 //!
-//! Past a limit point the structure gives way in one direction, and `M` of
+//! Past a limit point the structure is unstable in one direction, and `M` of
 //!
 //! ```text
 //! a = M b + q ṡ,      0 <= a ⊥ b >= 0
 //! ```
 //!
-//! is no P-matrix any more. If it is one without row and column `j`, the rays are counted all the same:
+//! is no longer a P-matrix. If `M` without row and column `j` is a P-matrix, all rays can still be found:
 //!
-//! * `b_j = 0`: for each sign of `ṡ` the others have one solution, and it is a ray if `a_j >= 0`;
-//! * `b_j = 1`: for every `ṡ` the others have one solution, which is a continuous, piecewise linear function of `ṡ`; the
-//!   rays are the zeros of `a_j(ṡ)`, a function of one variable. Its pieces are run through from `ṡ = 0` both ways, by
-//!   principal pivots (R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem*, section 4.5,
-//!   doi:10.1137/1.9780898719000). Where several pairs change at one `ṡ`, what follows solves the complementarity problem
-//!   of their rates, whose matrix is a P-matrix like every principal pivot transform of one.
+//! * `b_j = 0`: for each sign of `ṡ` the other pairs have one solution, which is a ray if `a_j >= 0`;
+//! * `b_j = 1`: for every `ṡ` the other pairs have one solution, a continuous, piecewise linear function of `ṡ`; the
+//!   rays are the zeros of `a_j(ṡ)`, a function of one variable. Its pieces are followed from `ṡ = 0` in both
+//!   directions by principal pivots (R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem*,
+//!   section 4.5, doi:10.1137/1.9780898719000). Where several pairs change at one `ṡ`, the next piece solves
+//!   the complementarity problem of their rates, whose matrix is a P-matrix like every principal pivot transform of a
+//!   P-matrix.
 //!
-//! Nothing is said where no such `j` is found, or where `a_j` vanishes along a whole piece.
+//! The method gives no result where no such `j` is found, or where `a_j` vanishes along a whole piece.
 
 use crate::algebra::Factorisation;
 use crate::complementarity::rates::p_matrix::{Certified, Pairs, is_p_matrix, scale, scales, solve_complementarity};
 use crate::resources::budget;
 use nalgebra::{DMatrix, DVector};
 
-/// Pieces of one half of the function, over the number of pairs.
+/// Largest number of pieces of one half of the function, per pair.
 const MOST_PIECES: usize = 10;
 /// Values below this fraction of their terms are zero at a change of pieces.
 const ROUND_OFF: f64 = 1e-12;
-/// The same of the function whose zeros are sought: what is in doubt is named, and examined exactly.
+/// The same fraction for the function whose zeros are sought: doubtful zeros are included, and examined exactly.
 const NEAR_ZERO: f64 = 1e-9;
-/// Terms are taken as no smaller than this part of the largest coefficient: what is left of them is round-off.
+/// Terms count as no smaller than this fraction of the largest coefficient: the rest may be round-off.
 const LEAST_TERM: f64 = 1e-2;
-/// What keeps a singular matrix from being one, relative.
+/// Relative diagonal shift that makes a singular matrix regular.
 const SHIFT: f64 = 1e-13;
 
-/// What all solutions are among, with whether each load rate has exactly one; those for load rates of these signs at
-/// least. `None` where that is not certain.
+/// Whether each load rate has exactly one solution, and a list that contains all solutions, at least for load rates of
+/// the given signs. `None` where this is not certain.
 pub(crate) fn all_solutions(matrix: DMatrix<f64>, load: DVector<f64>, signs: &[f64]) -> Option<(bool, Vec<Pairs>)> {
     match Certified::new(matrix.clone(), load.clone()) {
         Some(certified) => {
@@ -45,8 +47,8 @@ pub(crate) fn all_solutions(matrix: DMatrix<f64>, load: DVector<f64>, signs: &[f
     }
 }
 
-/// Whether there are certainly two solutions in all, one in which every pair slips (`a = 0 < b`) and one in which every pair
-/// sticks (`b = 0 < a`).
+/// Whether there are certainly two solutions in all: one with every pair slipping (`a = 0 < b`) and one with every pair
+/// sticking (`b = 0 < a`).
 pub fn slip_or_stick(matrix: DMatrix<f64>, load: DVector<f64>) -> bool {
     let Some((_, solutions)) = all_solutions(matrix, load, &[1.0, -1.0]) else { return false };
     let slip = |pairs: &Pairs| pairs.iter().all(|[a, b]| *a == 0.0 && *b > 0.0);
@@ -54,7 +56,7 @@ pub fn slip_or_stick(matrix: DMatrix<f64>, load: DVector<f64>) -> bool {
     solutions.len() == 2 && solutions.iter().any(slip) && solutions.iter().any(stick)
 }
 
-/// What every solution is among; `None` where that is not certain.
+/// A list that contains every solution; `None` where this is not certain.
 pub(crate) fn solutions(matrix: &DMatrix<f64>, load: &DVector<f64>) -> Option<Vec<Pairs>> {
     if !matrix.iter().chain(load.iter()).all(|value| value.is_finite()) {
         return None;
@@ -62,8 +64,8 @@ pub(crate) fn solutions(matrix: &DMatrix<f64>, load: &DVector<f64>) -> Option<Ve
     candidates(matrix).into_iter().find_map(|left_out| of_others(matrix, load, left_out))
 }
 
-/// Pairs without which the rest may be a P-matrix, likely ones first: where a symmetric matrix has one negative eigenvalue
-/// it is definite without `j` exactly if entry `(j, j)` of its inverse is negative.
+/// Pairs without which the matrix may be a P-matrix, likely pairs first: a symmetric matrix with one negative
+/// eigenvalue is definite without `j` exactly if entry `(j, j)` of its inverse is negative.
 fn candidates(matrix: &DMatrix<f64>) -> Vec<usize> {
     let count = matrix.nrows();
     let negative: Vec<usize> = (0..count).filter(|&row| matrix[(row, row)] <= 0.0).collect();
@@ -95,7 +97,7 @@ fn candidates(matrix: &DMatrix<f64>) -> Vec<usize> {
     candidates
 }
 
-/// The solutions if the matrix without a pair is a P-matrix.
+/// The solutions, if the matrix without pair `left_out` is a P-matrix.
 fn of_others(matrix: &DMatrix<f64>, load: &DVector<f64>, left_out: usize) -> Option<Vec<Pairs>> {
     let mut others = matrix.clone().remove_row(left_out).remove_column(left_out);
     let column = matrix.column(left_out).into_owned().remove_row(left_out);
@@ -134,21 +136,21 @@ fn of_others(matrix: &DMatrix<f64>, load: &DVector<f64>, left_out: usize) -> Opt
     Some(found)
 }
 
-/// The solution of the others as a function of `ṡ`: what is not zero of each pair is `D x + c + q ṡ`, with `x` what is. The
-/// last row is `a_j`.
+/// The solution of the other pairs as a function of `ṡ`: their nonzero members are `D x + c + q ṡ`, with `x` their zero
+/// members. The last row is `a_j`.
 #[derive(Clone)]
 struct Pieces {
     /// `D | c | q`, row by row.
     table: Vec<f64>,
     count: usize,
-    /// Of each pair, whether `b` is what is not zero.
+    /// For each pair, whether `b` is the nonzero member.
     active: Vec<bool>,
-    /// The largest coefficient at first.
+    /// The largest coefficient initially.
     size: f64,
 }
 
 impl Pieces {
-    /// At `ṡ = 0`.
+    /// The piece at `ṡ = 0`.
     fn new(
         matrix: &DMatrix<f64>,
         column: &DVector<f64>,
@@ -183,13 +185,13 @@ impl Pieces {
         self.entry(row, self.count + 1)
     }
 
-    /// The value at a load rate, and the size of its terms.
+    /// The value of a row at a load rate, and the magnitude of its terms.
     fn value(&self, row: usize, load: f64) -> (f64, f64) {
         let (constant, linear) = (self.entry(row, self.count), self.by_load(row) * load);
         (constant + linear, constant.abs() + linear.abs() + LEAST_TERM * self.size * (1.0 + load.abs()))
     }
 
-    /// Exchanges the two of a pair; `None` where the pivot is lost.
+    /// Exchanges the members of a pair; `None` where the pivot is not positive.
     fn pivot(&mut self, index: usize) -> Option<()> {
         budget::spend(self.table.len());
         let width = self.count + 2;
@@ -211,7 +213,8 @@ impl Pieces {
         Some(())
     }
 
-    /// The zeros of the last row on one side of `ṡ = 0`; `None` where it vanishes along a piece or digits run out.
+    /// The zeros of the last row on one side of `ṡ = 0`; `None` where the row vanishes along a piece or accuracy is
+    /// lost.
     fn zeros(mut self, sense: f64) -> Option<Vec<Pairs>> {
         let last = self.count;
         let mut found = Vec::new();
@@ -248,7 +251,7 @@ impl Pieces {
         None
     }
 
-    /// Makes no value that is zero at `load` fall below it on the far side.
+    /// Pivots such that no value that is zero at `load` becomes negative beyond it.
     fn turn_into(&mut self, load: f64, sense: f64, changing: Option<usize>) -> Option<()> {
         let at_zero: Vec<usize> = (0..self.count)
             .filter(|&row| {
@@ -270,7 +273,7 @@ impl Pieces {
         Some(())
     }
 
-    /// The next pair of which something becomes zero, and the load rate there.
+    /// The next pair with a member that becomes zero, and the load rate at this zero.
     fn next(&self, load: f64, sense: f64) -> Option<(usize, f64)> {
         let mut best: Option<(f64, usize)> = None;
         for row in 0..self.count {
@@ -279,7 +282,7 @@ impl Pieces {
                 continue;
             }
             let (value, size) = self.value(row, load);
-            // What is zero here was turned up; what is left of it is round-off.
+            // `turn_into` has made zero values nondecreasing; the remainder is round-off.
             if value <= ROUND_OFF * size {
                 continue;
             }
@@ -305,7 +308,7 @@ mod tests {
     use super::solutions;
     use nalgebra::{DMatrix, DVector};
 
-    /// Two pairs of which the load moves the first alone: that both stick is a solution, whatever rounding makes of the
+    /// Two pairs, of which the load moves only the first: sticking of both is a solution, whatever the rounding of the
     /// second pair's zero.
     #[test]
     fn rounding_hides_no_solution() {

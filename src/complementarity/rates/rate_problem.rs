@@ -3,7 +3,7 @@
 use crate::resources::budget;
 use nalgebra::DMatrix;
 
-/// Columns of a product that are formed at a time.
+/// Number of columns of a product that are formed at a time.
 const TOGETHER: usize = 8;
 
 /// A form with a sign: `sign F_form w`.
@@ -23,19 +23,20 @@ impl Signed {
     }
 }
 
-/// One way in which an entity may go on.
+/// One option of an entity.
 #[derive(Debug, Clone, Default)]
 pub struct Choice {
     /// Forms that are zero.
     pub zero: Vec<usize>,
-    /// Forms that are not negative.
+    /// Forms that are nonnegative.
     pub nonnegative: Vec<Signed>,
-    /// Forms that are not negative as a consequence of the others. They decide nothing; what all options of an entity
-    /// have in common holds before the entity is decided, and the more that is, the sooner a branch is seen to be empty.
+    /// Forms that are nonnegative as a consequence of the others. They decide nothing; but inequalities common to all
+    /// options of an entity hold before the entity is decided, and the more of these there are, the sooner a branch is
+    /// found to be empty.
     pub implied: Vec<Signed>,
 }
 
-/// Something that takes exactly one of its options.
+/// An entity, such as a contact, that takes exactly one of its options.
 #[derive(Debug, Clone)]
 pub struct Entity {
     pub options: Vec<Choice>,
@@ -53,17 +54,17 @@ pub struct Touching {
     pub cone: [usize; 2],
 }
 
-/// Forms over the weights, and the entities.
+/// A rate problem: forms over the weights, and the entities.
 #[derive(Debug, Clone)]
 pub struct RateProblem {
-    /// One form a row, one weight a column.
+    /// One form per row, one weight per column.
     pub forms: DMatrix<f64>,
     /// Whether a form is a rate of force; the others are velocities.
     pub is_force: Vec<bool>,
     pub entities: Vec<Entity>,
-    /// Displacement rates and, in the last row, the load rate; one weight a column. Gives the arc length of a ray.
+    /// Displacement rates and, in the last row, the load rate; one weight per column. Gives the arc length of a ray.
     pub motion: DMatrix<f64>,
-    /// Rates of all reactions: the size against which a rate of force is zero.
+    /// Rates of all reactions: their magnitude is the reference by which a rate of force counts as zero.
     pub reactions: DMatrix<f64>,
 }
 
@@ -73,7 +74,8 @@ impl RateProblem {
         self.forms.ncols()
     }
 
-    /// How strongly entities feel each other: products of the sizes of their forms' coefficients, forms of unit size.
+    /// The strength of coupling between entities: products of the magnitudes of their forms' coefficients, with forms
+    /// of unit maximum norm.
     pub(crate) fn coupling(&self) -> DMatrix<f64> {
         let (count, weights) = (self.entities.len(), self.weights());
         let _held = budget::take::<f64>(2 * count * weights + count * count);
@@ -83,7 +85,7 @@ impl RateProblem {
                 budget::spend(2 * weights);
                 let values = self.forms.row(*form);
                 let size = values.amax().max(f64::MIN_POSITIVE);
-                // The last weight, the held structure's own, couples everything.
+                // The last weight, that of the held structure itself, couples all entities.
                 for column in 0..weights.saturating_sub(1) {
                     footprints[(row, column)] += values[column].abs() / size;
                 }
@@ -106,7 +108,7 @@ impl RateProblem {
 }
 
 impl Entity {
-    /// `0 <= a ⊥ b >= 0`; `b` is zero in the first option.
+    /// The complementary pair `0 <= a ⊥ b >= 0`; `b` is zero in the first option.
     pub fn complementary(a: usize, b: usize) -> Self {
         let option = |zero: usize, other: usize| Choice {
             zero: vec![zero],
@@ -116,7 +118,7 @@ impl Entity {
         Self { options: vec![option(b, a), option(a, b)], touching: None }
     }
 
-    /// Stick, slip forward, slip backward, free.
+    /// A touching contact, with the options stick, slip forward, slip backward and free.
     pub fn touching(forms: Touching) -> Self {
         let plus = Signed::plus;
         let both = |form: usize| [plus(form), Signed::minus(form)];
@@ -141,7 +143,7 @@ impl Entity {
         Self { options, touching: Some(forms) }
     }
 
-    /// Velocities and the forces that work on them, `(force, velocity)`, where the entity is one of the two kinds above.
+    /// The work-conjugate pairs `(force, velocity)` of the entity; `None` where the entity is of neither kind above.
     pub(crate) fn conjugates(&self) -> Option<Vec<[Signed; 2]>> {
         match self.touching {
             Some(forms) => Some(vec![
@@ -152,7 +154,7 @@ impl Entity {
         }
     }
 
-    /// A complementary pair `0 <= a ⊥ b >= 0`, if that is what the entity is: `b` vanishes in the first option (held),
+    /// The complementary pair `0 <= a ⊥ b >= 0`, if the entity is such a pair: `b` vanishes in the first option (held),
     /// `a` in the second.
     pub fn pair(&self) -> Option<[Signed; 2]> {
         let [first, second] = &self.options[..] else { return None };
@@ -163,14 +165,14 @@ impl Entity {
 }
 
 impl Choice {
-    /// Whether the option makes a signed form not negative.
+    /// Whether the option makes a signed form nonnegative.
     pub fn gives(&self, signed: Signed) -> bool {
         self.zero.contains(&signed.form) || self.nonnegative.contains(&signed) || self.implied.contains(&signed)
     }
 }
 
 impl Entity {
-    /// The signed forms that are not negative whatever the option.
+    /// The signed forms that are nonnegative under every option.
     pub fn common(&self) -> Vec<Signed> {
         let mut common = Vec::new();
         for choice in &self.options {

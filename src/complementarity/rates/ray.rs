@@ -1,43 +1,43 @@
-//! The ray of one combination of options, exactly: the null vector of its equations in both senses.
+//! The exact ray of one combination of options: the null vector of its equations, in both senses.
 
 use crate::algebra::null_space;
 use crate::complementarity::rates::rate_problem::{Choice, Entity, RateProblem};
 use crate::resources::budget;
 use nalgebra::{DMatrix, DVector};
 
-/// Inequalities (of rates of unit arc length) that hold within this are weak.
+/// Inequalities (of rates of unit arc length) that hold with equality within this tolerance are weak.
 pub const WEAK: f64 = 1e-9;
-/// What is below this may change its sign within the small steps by which weak rays are tried.
+/// Values below this may change sign within the small steps by which weak rays are tried.
 pub const IN_DOUBT: f64 = 1e-7;
-/// Rounding of a sum against the sum of its terms' sizes.
+/// Rounding error of a sum, relative to the sum of the magnitudes of its terms.
 const ROUNDING: f64 = 1e-14;
 /// Relative pivot that decides the rank of a combination's equations.
 pub const RANK: f64 = 1e-11;
 
-/// What the equations of one combination leave.
+/// The solution set of the equations of one combination.
 pub enum Line {
-    /// Nothing but zero.
+    /// Zero only.
     Nothing,
     /// A vector of unit arc length and its multiples.
     Along(DVector<f64>),
-    /// More than one independent vector, one a column.
+    /// More than one independent vector, one per column.
     Plane(DMatrix<f64>),
-    /// A vector along which reactions change and nothing moves.
+    /// A vector along which reactions change without motion.
     Still,
-    /// The equations hold a number that is not finite.
+    /// The equations contain a number that is not finite.
     NotFinite,
 }
 
-/// Sizes of the rates of force along a vector of weights.
+/// Magnitudes of the rates of force along a vector of weights.
 struct Forces {
     largest: f64,
-    /// Rounding of the sums.
+    /// Rounding error of the sums.
     rounding: f64,
 }
 
 impl Forces {
-    /// What is zero among the forces of an entity. A contact that touches is judged by its own forces: along a chain that
-    /// is close to jamming they fall by orders of magnitude from node to node.
+    /// The tolerance below which forces of an entity count as zero. A touching contact is judged by its own forces:
+    /// along a chain close to jamming, forces fall by orders of magnitude from node to node.
     fn tolerance(&self, entity: &Entity, values: &DVector<f64>, tolerance: f64) -> f64 {
         let own = entity
             .touching
@@ -54,7 +54,7 @@ pub(crate) fn size(problem: &RateProblem, weights: &DVector<f64>) -> f64 {
 pub(crate) fn line(problem: &RateProblem, chosen: &[usize]) -> Line {
     let choices = || problem.entities.iter().zip(chosen).map(|(entity, &choice)| &entity.options[choice]);
     let rows: Vec<usize> = choices().flat_map(|choice| choice.zero.iter().copied()).collect();
-    // Its scaled copy, and the basis.
+    // The scaled copy of the equations, and the basis.
     let _held = budget::take::<f64>(3 * rows.len() * problem.weights());
     budget::spend(rows.len() * problem.weights());
     let equations = problem.forms.select_rows(&rows);
@@ -75,7 +75,7 @@ pub(crate) fn line(problem: &RateProblem, chosen: &[usize]) -> Line {
     if weights.iter().all(|weight| weight.is_finite()) { Line::Along(weights) } else { Line::NotFinite }
 }
 
-/// Whether a combination has a ray, or more than a line.
+/// Whether a combination has a ray, or a solution set of more than one dimension.
 pub(crate) fn is_feasible(problem: &RateProblem, chosen: &[usize]) -> bool {
     match line(problem, chosen) {
         Line::Along(weights) => {
@@ -89,7 +89,7 @@ pub(crate) fn is_feasible(problem: &RateProblem, chosen: &[usize]) -> bool {
 
 fn forces(problem: &RateProblem, weights: &DVector<f64>) -> Forces {
     let largest = (&problem.reactions * weights).amax();
-    // Where no force changes, what is left is the rounding of the sums.
+    // Where no force changes, the sums contain rounding errors only.
     let mut terms = vec![0.0; problem.reactions.nrows()];
     for (column, weight) in problem.reactions.column_iter().zip(weights.iter()) {
         terms.iter_mut().zip(column.iter()).for_each(|(sum, value)| *sum += (value * weight).abs());
@@ -98,8 +98,8 @@ fn forces(problem: &RateProblem, weights: &DVector<f64>) -> Forces {
     Forces { largest, rounding: rounding.max(f64::MIN_POSITIVE) }
 }
 
-/// The edges, of unit arc length, of what a combination leaves of a plane: along each some inequality holds with
-/// equality. None where the plane has another dimension than two.
+/// The edges, of unit arc length, of the feasible part of a combination's plane: along each edge some inequality holds
+/// with equality. No edges where the dimension of the plane is not two.
 pub(crate) fn edges(problem: &RateProblem, chosen: &[usize], basis: &DMatrix<f64>) -> Vec<DVector<f64>> {
     if basis.ncols() != 2 {
         return Vec::new();
@@ -128,39 +128,39 @@ pub(crate) fn edges(problem: &RateProblem, chosen: &[usize], basis: &DMatrix<f64
     edges
 }
 
-/// What the forms are along a vector of weights of unit arc length.
+/// The values of the forms along a vector of weights of unit arc length.
 pub(crate) fn forms_along<'a>(problem: &'a RateProblem, weights: &DVector<f64>) -> Along<'a> {
     budget::spend((problem.forms.nrows() + 2 * problem.reactions.nrows()) * problem.weights());
     Along { problem, values: &problem.forms * weights, forces: forces(problem, weights) }
 }
 
-/// A vector of weights of unit arc length as the entities see it.
+/// The forms and forces along a vector of weights of unit arc length.
 pub(crate) struct Along<'a> {
     problem: &'a RateProblem,
-    /// Of each form.
+    /// Value of each form.
     values: DVector<f64>,
     forces: Forces,
 }
 
 impl Along<'_> {
-    /// The same of the weights reversed.
+    /// The values along the reversed weights.
     pub fn reversed(mut self) -> Self {
         self.values.neg_mut();
         self
     }
 
-    /// What is zero among the rates of force.
+    /// The tolerance below which rates of force count as zero.
     pub fn force_tolerance(&self) -> f64 {
         (WEAK * self.forces.largest).max(self.forces.rounding)
     }
 
-    /// The options of each entity under which a ray, found under the chosen ones, is feasible. As every option speaks of
-    /// its own entity only, the ray is feasible under every combination of them.
+    /// The options of each entity under which a ray, found under the chosen options, is feasible. As each option
+    /// concerns its own entity only, the ray is feasible under every combination of these options.
     pub fn fitting(&self, chosen: &[usize]) -> Vec<Vec<usize>> {
         self.within(WEAK, chosen)
     }
 
-    /// The same where what is small counts as zero.
+    /// The options of each entity under which the ray is feasible if small values count as zero.
     pub fn in_doubt(&self, chosen: &[usize]) -> Vec<Vec<usize>> {
         self.within(IN_DOUBT, chosen)
     }
@@ -187,7 +187,7 @@ impl Along<'_> {
         chosen.iter().enumerate().filter(is_violated).map(|(index, _)| index).collect()
     }
 
-    /// Whether some inequality of a ray holds with equality under the first of its options.
+    /// Whether some inequality of a ray holds with equality under the first fitting option of each entity.
     pub fn is_weak(&self, fitting: &[Vec<usize>]) -> bool {
         let equals = |(index, options): (usize, &Vec<usize>)| {
             self.some_inequality(index, options[0], |value, tolerance| value <= tolerance)
@@ -195,7 +195,7 @@ impl Along<'_> {
         fitting.iter().enumerate().any(equals)
     }
 
-    /// Whether something is so of the value and the weak tolerance of some inequality of an entity's option.
+    /// Whether `is_so` holds for the value and the weak tolerance of some inequality of an entity's option.
     fn some_inequality(&self, entity: usize, choice: usize, is_so: impl Fn(f64, f64) -> bool) -> bool {
         let entity = &self.problem.entities[entity];
         let force = self.forces.tolerance(entity, &self.values, WEAK);

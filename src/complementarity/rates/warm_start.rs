@@ -1,15 +1,15 @@
-//! Combinations that a known vector of weights points to, such as the direction along which the path came.
+//! Combinations suggested by a known vector of weights, such as the incoming direction of the path.
 
 use crate::complementarity::rates::combinations::combinations;
 use crate::complementarity::rates::rate_problem::{Choice, RateProblem};
 use nalgebra::DVector;
 
-/// Misfits (against unit arc length, or the largest force) below this leave an option in doubt.
+/// Difference of misfits (relative to unit arc length, or the largest force) up to which options are in doubt.
 const DOUBT: f64 = 1e-6;
-/// Combinations of doubtful options that are given.
+/// Largest number of combinations returned.
 const MOST: u64 = 64;
 
-/// The combinations whose options fit the weights, best first; no more than a few.
+/// The combinations whose options fit the weights, best first; a limited number.
 pub fn near(problem: &RateProblem, weights: &DVector<f64>) -> Vec<Vec<usize>> {
     let values = &problem.forms * weights;
     let largest = |force: bool| {

@@ -1,8 +1,9 @@
-//! One node that border rows hold.
+//! One node constrained by border rows.
 
 use nalgebra::Vector3;
 
-/// One node. Its small matrices are among the numbers of all nodes, so that many nodes take little memory.
+/// A constrained node. Its small matrices are stored in a common array of all nodes, so that many nodes take little
+/// memory.
 pub(crate) struct HeldNode {
     pub(crate) unknowns: [u32; 3],
     pub(crate) rows: [u32; 3],
@@ -11,21 +12,21 @@ pub(crate) struct HeldNode {
     pub(crate) held: u8,
     /// Whether `Q` is not the identity.
     pub(crate) turns: bool,
-    /// Whether friction is folded.
+    /// Whether friction is eliminated into the unconstrained equations.
     pub(crate) folds: bool,
-    /// Its reactions stay borders.
+    /// Whether the reactions remain borders.
     pub keeps: bool,
-    /// Sign of the part of the determinant that is eliminated, its place apart.
+    /// Sign of the eliminated factor of the determinant, without the sign of the permutation.
     pub(crate) sign: i8,
-    /// Where its numbers begin.
+    /// Index of the node's first number in the common array.
     pub(crate) numbers: u32,
-    /// Held unknowns of the nodes before it.
+    /// Number of constrained unknowns of the preceding nodes.
     pub(crate) before: u32,
 }
 
-/// An entry `d` of a held row: another border's.
+/// An entry `d` of a constraint row, in the column of another border.
 pub(crate) struct Coupling {
-    /// Which of the nodes, and which of its rows.
+    /// Index of the node, and of the row among the node's rows.
     pub node: usize,
     pub row: usize,
     pub border: usize,
@@ -39,7 +40,7 @@ pub(crate) struct Matrices<'a> {
     pub constraint: &'a [f64],
     /// `R⁻¹`
     pub reaction: &'a [f64],
-    /// `F R⁻¹`; where it is folded.
+    /// `F R⁻¹`, where friction is eliminated.
     pub friction: &'a [f64],
     /// `Q`, where it is not the identity.
     pub rotation: &'a [f64],
@@ -68,7 +69,7 @@ impl HeldNode {
         usize::from(self.count)
     }
 
-    /// So many of the rotated unknowns are held.
+    /// Number of constrained unknowns among the rotated unknowns.
     pub(crate) fn held_count(&self) -> usize {
         usize::from(self.held)
     }
@@ -94,7 +95,7 @@ impl HeldNode {
         self.unknowns[..self.count()].iter().map(|unknown| *unknown as usize)
     }
 
-    /// Its rotated unknowns that are held.
+    /// The constrained unknowns among the rotated unknowns.
     pub fn held(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
         self.unknowns[..self.held_count()].iter().map(|unknown| *unknown as usize)
     }
@@ -107,7 +108,7 @@ impl HeldNode {
         self.columns[..self.held_count()].iter().map(|column| *column as usize)
     }
 
-    /// `Qᵀ x` or `Q x` of its part of a vector.
+    /// Applies `Qᵀ`, or `Q` if `back`, to the node's part of a vector.
     pub(crate) fn turn(&self, numbers: &[f64], x: &mut [f64], back: bool) {
         let here = gathered(self.unknowns(), x);
         let (rotation, count) = (self.matrices(numbers).rotation, self.count());
@@ -116,7 +117,7 @@ impl HeldNode {
     }
 }
 
-/// Values at up to three places, zero after them.
+/// The values at up to three places, padded with zeros.
 pub(crate) fn gathered(places: impl Iterator<Item = usize>, values: &[f64]) -> Vector3<f64> {
     let mut gathered = Vector3::zeros();
     places.zip(gathered.iter_mut()).for_each(|(place, value)| *value = values[place]);

@@ -1,10 +1,10 @@
-//! Nodes whose unknowns border rows hold: closed contacts.
+//! Nodes with unknowns constrained by border rows: closed contacts.
 //!
-//! | file | what it holds |
+//! | file | contents |
 //! |---|---|
-//! | `nodal_constraints` | which rows hold which unknowns |
-//! | `held_node` | the matrices of one held node |
-//! | `node_cache` | those of the last factorisation, for the next |
+//! | `nodal_constraints` | which border rows constrain which unknowns |
+//! | `held_node` | the matrices of one constrained node |
+//! | `node_cache` | the constrained nodes of the last factorisations, for reuse |
 
 pub(crate) mod held_node;
 pub(crate) mod nodal_constraints;

@@ -1,9 +1,9 @@
-//! What holds the nodes of a matrix.
+//! The border rows that constrain the nodes of a matrix.
 
 use smallvec::SmallVec;
 use std::sync::Arc;
 
-/// Border rows that hold unknowns of one node, and the border columns with its reactions, one for each row.
+/// Border rows that constrain unknowns of one node, and the border columns with its reactions, one for each row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Holding {
     /// Unknowns of the node: at most three.
@@ -12,11 +12,11 @@ pub struct Holding {
     pub columns: IndexList,
 }
 
-/// Some numbers of rows, columns or unknowns.
+/// Indices of rows, columns or unknowns.
 pub type IndexList = SmallVec<[usize; 3]>;
 
 impl Holding {
-    /// Of a node that nothing holds yet.
+    /// A holding without rows, for a node that is not constrained yet.
     pub fn new(unknowns: impl IntoIterator<Item = usize>) -> Self {
         Self { unknowns: unknowns.into_iter().collect(), rows: IndexList::new(), columns: IndexList::new() }
     }
@@ -33,7 +33,7 @@ impl Holdings {
         Self { list: Arc::new(list) }
     }
 
-    /// Those of the transposed matrix.
+    /// The holdings of the transposed matrix.
     #[must_use]
     pub fn transposed(&self) -> Self {
         let turned = |holding: &Holding| Holding {
@@ -49,11 +49,11 @@ impl Holdings {
     }
 }
 
-/// What becomes of the reactions of contacts with friction.
+/// The treatment of the reactions of contacts with friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Friction {
-    /// They stay borders.
+    /// Reactions remain borders.
     Bordered,
-    /// They are eliminated, and the matrix is unsymmetric.
+    /// Reactions are eliminated, which makes the matrix unsymmetric.
     Folded,
 }

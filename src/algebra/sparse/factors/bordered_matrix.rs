@@ -1,4 +1,4 @@
-//! A matrix `[[K, B], [C, D]]` with `K` sparse and nearly symmetric, and few rows and columns beside it.
+//! A matrix `[[K, B], [C, D]]` with `K` sparse and nearly symmetric, and few border rows and columns.
 
 use crate::algebra::Inertia;
 use crate::algebra::dense::assembly::Sink;
@@ -9,7 +9,7 @@ use nalgebra::DVector;
 use smallvec::smallvec;
 use std::sync::Arc;
 
-/// The matrix as it is assembled.
+/// The bordered matrix as assembled.
 #[derive(Debug, Clone)]
 pub struct Bordered {
     pub(crate) pattern: Arc<Pattern>,
@@ -19,14 +19,14 @@ pub struct Bordered {
     pub(crate) right: Vec<SparseEntries>,
     /// Rows of `[C, D]`.
     pub(crate) lower: Vec<SparseEntries>,
-    /// Entries of `K` that were put in one by one: only these may be unsymmetric.
+    /// Entries of `K` that were added one by one: only these may be unsymmetric.
     pub(crate) touched: Vec<(usize, usize)>,
-    /// Some entry had no place.
+    /// Whether an entry was added outside the pattern.
     pub(crate) is_outside: bool,
 }
 
 impl Bordered {
-    /// All zero, with so many rows and columns beside `K`.
+    /// The zero matrix with `borders` border rows and columns.
     pub fn new(pattern: Arc<Pattern>, borders: usize) -> Self {
         Self {
             values: vec![0.0; pattern.entries()],
@@ -38,17 +38,17 @@ impl Bordered {
         }
     }
 
-    /// Rows of the whole.
+    /// Number of rows, borders included.
     pub fn size(&self) -> usize {
         self.pattern.size() + self.lower.len()
     }
 
-    /// Adds to an entry of `K` whose place is known, as a part of symmetric whole.
+    /// Adds to the entry of `K` with index `place`, as part of a symmetric contribution.
     pub fn add_at(&mut self, place: usize, value: f64) {
         self.values[place] += value;
     }
 
-    /// With so many rows and columns more, zero.
+    /// The matrix with `borders` further border rows and columns of zeros.
     #[must_use]
     pub fn widened(mut self, borders: usize) -> Self {
         let count = self.lower.len() + borders;
@@ -119,23 +119,23 @@ impl Bordered {
         product
     }
 
-    /// The largest entry, those at one place counted one by one.
+    /// The largest magnitude of the entries, with several entries at one place counted separately.
     pub fn largest(&self) -> f64 {
         let borders = self.right.iter().chain(&self.lower).flatten().map(|(_, value)| *value);
         self.values.iter().copied().chain(borders).fold(0.0, |most, value| value.abs().max(most))
     }
 
-    /// The largest entry of `K`.
+    /// The largest magnitude of the entries of `K`.
     pub fn largest_within(&self) -> f64 {
         self.values.iter().fold(0.0, |most, value| value.abs().max(most))
     }
 
-    /// Column of `B`; repeated places are to be added.
+    /// A column of `B`; entries at the same place add up.
     pub fn right_column(&self, border: usize) -> &[(usize, f64)] {
         &self.right[border]
     }
 
-    /// `y = A x`, and the sums of the terms' sizes.
+    /// Computes `y = A x` and the sums of the magnitudes of its terms.
     pub(crate) fn multiply(&self, x: &[f64], y: &mut [f64], sizes: &mut [f64]) {
         let n = self.pattern.size();
         y.fill(0.0);
@@ -162,8 +162,8 @@ impl Bordered {
         }
     }
 
-    /// The same of so many vectors one after the other: an entry that is looked up serves several of them.
-    /// The sizes are left as they are where they are not asked for.
+    /// Computes `y = A x` for consecutive vectors: each entry, once read, serves several vectors. `sizes` remains
+    /// unchanged without `WITH_SIZES`.
     pub(crate) fn multiply_all<const WITH_SIZES: bool>(&self, x: &[f64], y: &mut [f64], sizes: &mut [f64]) {
         const SIDE_BY_SIDE: usize = 4;
         let size = self.size();
@@ -190,7 +190,7 @@ impl Bordered {
         }
     }
 
-    /// Calls with row, column and value of each entry; several at one place add up.
+    /// Calls `each` with row, column and value of each entry; entries at the same place add up.
     fn each_entry(&self, each: &mut impl FnMut(usize, usize, f64)) {
         let n = self.pattern.size();
         for column in 0..n {
@@ -204,18 +204,18 @@ impl Bordered {
         }
     }
 
-    /// Vectors of unit size that `K` alone, symmetric, turns to nothing within a tolerance; `None` where it could not be
+    /// The unit null vectors of `K` alone, taken as symmetric, within a tolerance; `None` where `K` could not be
     /// factorised.
     pub fn null_vectors(&self, tolerance: f64) -> Option<Vec<DVector<f64>>> {
         SymmetricFactor::new(self.pattern.clone(), &self.values).ok()?.null_vectors(tolerance)
     }
 
-    /// Numbers of eigenvalues of `K` alone, symmetric, by sign.
+    /// The inertia of `K` alone, taken as symmetric.
     pub fn inertia(&self, tolerance: f64) -> Option<Inertia> {
         SymmetricFactor::new(self.pattern.clone(), &self.values).ok()?.inertia(tolerance)
     }
 
-    /// The matrix with a symmetric `K`: a row `a` that it has more becomes a border `[[K, e], [a, -1]]`.
+    /// The matrix with a symmetric `K`: an unsymmetric remainder `a` of a row becomes a border `[[K, e], [a, -1]]`.
     pub(crate) fn symmetrised(&self) -> Self {
         let mut whole = self.clone();
         let mut extra: Vec<(usize, SparseEntries)> = Vec::new();
@@ -234,7 +234,7 @@ impl Bordered {
             if difference.abs() <= 4.0 * f64::EPSILON * size {
                 continue;
             }
-            // The triangle above is the rule.
+            // The upper triangle defines the symmetric matrix.
             whole.values[below] = self.values[above];
             match extra.iter_mut().find(|(known, _)| *known == row) {
                 Some((_, entries)) => entries.push((column, difference)),

@@ -1,4 +1,4 @@
-//! Sparse symmetric matrices that are positive definite, by their Cholesky factorisation.
+//! Cholesky factorisation of sparse symmetric positive definite matrices.
 
 use crate::algebra::dense::solve_counters::count_solves;
 use crate::algebra::sparse::factors::supernodal_ldl;
@@ -10,26 +10,26 @@ use faer::sparse::linalg::cholesky::{LdltRef, LltRef};
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Conj, MatMut, Par, Side};
 
-/// Multiplications for each entry of the factor from which it goes by dense blocks.
+/// Multiplications per entry of the factor from which the factorisation works by dense blocks.
 const BY_BLOCKS: f64 = 40.0;
 
 /// Entries of the lower triangle, diagonal included; several at one place are added up.
 pub type Triangle = Vec<(usize, usize, f64)>;
 
-/// A factorisation of a matrix that is positive definite.
+/// The factorisation of a positive definite matrix.
 pub struct Definite {
     symbolic: Symbolic,
-    /// Of `L Lᵀ`; done in pieces, of `L D Lᵀ`.
+    /// Values of the factors of `L Lᵀ`, or of `L D Lᵀ` where factorised in pieces.
     values: Vec<f64>,
-    /// What rows and columns were multiplied by.
+    /// Scale factors of rows and columns.
     scales: Vec<f64>,
     _held: Taken,
 }
 
 impl Definite {
-    /// Factorises the matrix with `shift` of each diagonal entry added (less than 0: with a margin, so that rounding cannot
-    /// have made it definite); `None` where it is not positive definite then, or where a diagonal entry is not above
-    /// `|shift|` times the sizes of what adds up to its row.
+    /// Factorises the matrix with each diagonal entry increased by the fraction `shift` (negative: a margin, so that
+    /// rounding alone cannot make the matrix definite). `None` where the shifted matrix is not positive definite, or
+    /// where a diagonal entry is not above `|shift|` times the sum of the magnitudes of the contributions to its row.
     pub fn new(size: usize, lower: &Triangle, shift: f64) -> Option<Self> {
         let (mut diagonal, mut sizes) = (vec![0.0; size], vec![0.0_f64; size]);
         for &(row, column, value) in lower {
@@ -45,7 +45,7 @@ impl Definite {
         if !diagonal.iter().zip(&sizes).all(is_clear) {
             return None;
         }
-        // A congruence: the diagonal becomes 1 and definiteness stays.
+        // A congruence transformation: the diagonal becomes 1 and definiteness is preserved.
         let scales: Vec<f64> = diagonal.iter().map(|value| 1.0 / value.sqrt()).collect();
         let scaled =
             lower.iter().map(|&(row, column, value)| Triplet::new(row, column, value * scales[row] * scales[column]));
@@ -63,7 +63,7 @@ impl Definite {
         definite.factorise(&matrix, &whole).then_some(definite)
     }
 
-    /// Whether the scaled matrix, whose lower triangle is given, is positive definite.
+    /// Factorises the scaled matrix, given by its lower triangle; returns whether it is positive definite.
     fn factorise(&mut self, matrix: &SparseColMat<usize, f64>, whole: &(Vec<usize>, Vec<usize>)) -> bool {
         if let Some((blocks, (order, place_of))) = self.symbolic.in_pieces() {
             let each_below = |place: usize, each: &mut dyn FnMut(usize, f64)| {
@@ -105,7 +105,7 @@ impl Definite {
         let size = values.len();
         budget::spend(2 * self.values.len());
         let symbolic = &self.symbolic.cholesky;
-        // A few numbers for each unknown.
+        // Takes only a few numbers per unknown.
         let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
         let (right, stack) = (MatMut::from_column_major_slice_mut(values, size, 1), MemStack::new(&mut memory));
         match self.symbolic.in_pieces() {
@@ -117,15 +117,15 @@ impl Definite {
         values.iter_mut().zip(&self.scales).for_each(|(value, scale)| *value *= scale);
     }
 
-    /// A vector in the direction that the matrix resists least, of largest entry 1 where rows and columns are scaled to a
-    /// diagonal of 1.
+    /// The direction of least stiffness, approximately, by inverse iteration with the matrix scaled to a diagonal of 1;
+    /// the largest entry of the scaled vector is 1.
     pub fn softest(&self) -> Vec<f64> {
         const ROUNDS: usize = 4;
         let mut vector: Vec<f64> = (0..self.scales.len()).map(|place| 1.0 + (place % 7) as f64 / 8.0).collect();
         for _ in 0..ROUNDS {
             let scaled = |(value, scale): (&f64, &f64)| (value / scale).abs();
             let largest = vector.iter().zip(&self.scales).map(scaled).fold(f64::MIN_POSITIVE, f64::max);
-            // The right-hand side of the scaled matrix is the scaled vector.
+            // The right-hand side of the scaled system is the scaled vector.
             vector.iter_mut().zip(&self.scales).for_each(|(value, scale)| *value /= largest * scale * scale);
             self.solve(&mut vector);
         }
@@ -136,7 +136,7 @@ impl Definite {
     }
 }
 
-/// The pattern of a lower triangle, by columns, with its mirror image.
+/// The pattern of both triangles, by columns, from the pattern of the lower triangle.
 fn both_triangles(starts: &[usize], rows: &[usize]) -> (Vec<usize>, Vec<usize>) {
     let size = starts.len().saturating_sub(1);
     let each =
@@ -169,7 +169,7 @@ mod tests {
         Definite::new(size, lower, -margin).is_some()
     }
 
-    /// A chain of springs 1, held at one end by a spring of its own.
+    /// A chain of springs of stiffness 1, supported at one end by a spring of stiffness `held`.
     fn chain(size: usize, held: f64) -> Vec<(usize, usize, f64)> {
         let mut lower = vec![(0, 0, held)];
         for place in 1..size {

@@ -1,9 +1,9 @@
 //! `K = L D Lᵀ` of a symmetric sparse matrix, without exchanges.
 //!
-//! Rows and columns are brought to entries of about 1 first (by powers of two, so that nothing is rounded). A pivot that
-//! is lost in cancellation, as at a limit point or where only a contact holds a node, is raised by 1: what is factorised is
-//! `K + Σ θ e eᵀ`, and the caller takes the raises back by borders `[[K + θ e eᵀ, -θ e], [eᵀ, -1]]`. So the factors are
-//! never near singular, however many eigenvalues of `K` are zero.
+//! Rows and columns are first scaled to entries of about 1 (by powers of two, so without rounding). A pivot lost to
+//! cancellation, as at a limit point or where only a contact constrains a node, is raised by 1: the factorised matrix
+//! is `K + Σ θ e eᵀ`, and the caller removes the increments by borders `[[K + θ e eᵀ, -θ e], [eᵀ, -1]]`. The factors
+//! are therefore never near singular, however many eigenvalues of `K` are zero.
 
 use crate::algebra::dense::inertia::{Inertia, inertia};
 use crate::algebra::sparse::factors::pattern::Pattern;
@@ -16,12 +16,12 @@ use faer::{Conj, MatMut, Par, Side};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
-/// Why a matrix was not factorised.
+/// The reason why a matrix was not factorised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LdlFailure {
-    /// A number is not finite, or became so.
+    /// An entry of the matrix or of the factors is not finite.
     NotFinite,
-    /// More pivots had to be raised than is worth it.
+    /// Too many pivots had to be raised.
     TooManySmallPivots,
     OutOfMemory,
 }
@@ -30,22 +30,22 @@ pub enum LdlFailure {
 pub struct SymmetricFactor {
     pattern: Arc<Pattern>,
     values: Vec<f64>,
-    /// What rows and columns were multiplied by: powers of two.
+    /// Scale factors of rows and columns: powers of two.
     scales: Vec<f64>,
-    /// Unknown and raise `θ`, in the units of the matrix.
+    /// Unknowns with raised diagonal entries, and the increments `θ` in the units of the matrix.
     raised: Vec<(usize, f64)>,
     _held: Taken,
 }
 
-/// Pivots below this are raised, entries of the row being about 1.
+/// Pivots below this magnitude are raised; the scaled rows have entries of about 1.
 pub(crate) const SMALL: f64 = 1e-4;
-/// Pivots below this are taken as this on the way, so that the rest can be seen.
+/// Pivots below this magnitude are replaced by it, so that the remaining pivots can be computed.
 const ZERO: f64 = 1e-15;
-/// Raises beyond which there is something else wrong.
+/// Number of raised pivots beyond which the factorisation is given up.
 const MOST_RAISED: usize = 256;
 
 impl SymmetricFactor {
-    /// Factorises; `values` as the pattern has them. Only one triangle is read.
+    /// Factorises; `values` in the sequence of the pattern. Only one triangle is read.
     pub fn new(pattern: Arc<Pattern>, values: &[f64]) -> Result<Self, LdlFailure> {
         let size = pattern.size();
         if !values.iter().all(|value| value.is_finite()) {
@@ -83,8 +83,8 @@ impl SymmetricFactor {
         }
     }
 
-    /// The unknown that is eliminated last. What is lost is nearly always lost there: it is raised at once, which costs one
-    /// solve more and spares a second factorisation.
+    /// The unknown eliminated last. Cancellation nearly always occurs at its pivot: raising this pivot from the start
+    /// costs one more solve and saves a second factorisation.
     fn last(&self) -> Option<usize> {
         let last = self.pattern.size().checked_sub(1)?;
         Some(self.pattern.symbolic.cholesky.perm().map_or(last, |perm| perm.arrays().0[last]))
@@ -138,7 +138,7 @@ impl SymmetricFactor {
         }
     }
 
-    /// Calls with each unknown and its pivot in `D`, of the scaled matrix.
+    /// Calls `each` with each unknown and its pivot in `D`, for the scaled matrix.
     fn each_pivot(&self, each: &mut dyn FnMut(usize, f64)) {
         let order = self.pattern.symbolic.cholesky.perm().map(|perm| perm.arrays().0);
         let unknown = |place: usize| order.map_or(place, |order| order[place]);
@@ -161,23 +161,24 @@ impl SymmetricFactor {
         }
     }
 
-    /// Unknowns whose diagonal entry was raised, and by how much.
+    /// The unknowns whose diagonal entries were raised, and the increments.
     pub fn raised(&self) -> &[(usize, f64)] {
         &self.raised
     }
 
-    /// Negative pivots: eigenvalues below zero of the raised matrix (Sylvester's law).
+    /// Number of negative pivots: the negative eigenvalues of the raised matrix (Sylvester's law).
     pub fn negative_pivots(&self) -> usize {
         let mut negative = 0;
         self.each_pivot(&mut |_, pivot| negative += usize::from(pivot < 0.0));
         negative
     }
 
-    /// Numbers of eigenvalues of `K` itself by sign.
+    /// The inertia of `K` itself.
     ///
-    /// `[[K + EΘEᵀ, E], [Eᵀ, 1/Θ]]` has the inertia of `K` and as many positive eigenvalues more as there are raises, and
-    /// that of the raised matrix with that of `1/Θ - Eᵀ (K + EΘEᵀ)⁻¹ E` (E. V. Haynsworth, Linear Algebra Appl. 1 (1968)
-    /// 73, doi:10.1016/0024-3795(68)90050-5). Eigenvalues of the latter up to `tolerance` relative count as zero.
+    /// The inertia of `[[K + EΘEᵀ, E], [Eᵀ, 1/Θ]]` is that of `K` plus one positive eigenvalue per increment, and also
+    /// that of the raised matrix plus that of `1/Θ - Eᵀ (K + EΘEᵀ)⁻¹ E` (E. V. Haynsworth, Linear Algebra Appl. 1
+    /// (1968) 73, doi:10.1016/0024-3795(68)90050-5). Eigenvalues of the latter matrix of relative magnitude up to
+    /// `tolerance` count as zero.
     pub fn inertia(&self, tolerance: f64) -> Option<Inertia> {
         let (size, count) = (self.pattern.size(), self.raised.len());
         let negative = self.negative_pivots();
@@ -207,8 +208,8 @@ impl SymmetricFactor {
         Some(complement)
     }
 
-    /// Vectors that `K` turns to nothing, each of unit size: `(K + EΘEᵀ)⁻¹ E √Θ w` for every `w` that the complement turns
-    /// to nothing within `tolerance`.
+    /// The unit null vectors of `K`: `(K + EΘEᵀ)⁻¹ E √Θ w` for every eigenvector `w` of the complement with an
+    /// eigenvalue of magnitude up to `tolerance`.
     pub fn null_vectors(&self, tolerance: f64) -> Option<Vec<DVector<f64>>> {
         let complement = self.complement()?;
         let (size, count) = (self.pattern.size(), self.raised.len());
@@ -227,8 +228,8 @@ impl SymmetricFactor {
         Some(vectors)
     }
 
-    /// Solves with the raised matrix for right-hand sides one after the other, overwritten; `false` when memory does not
-    /// suffice or a result is not finite.
+    /// Solves with the raised matrix for `count` consecutive right-hand sides, overwritten by the solutions; `false`
+    /// when memory runs out or a result is not finite.
     pub fn solve(&self, right_hand_sides: &mut [f64], count: usize) -> bool {
         let size = self.pattern.size();
         if size == 0 || count == 0 {
@@ -256,7 +257,7 @@ impl SymmetricFactor {
     }
 }
 
-/// Powers of two near `1/√(largest entry of the row)`; a row without entries is taken as the stiffest.
+/// Powers of two near `1/√(largest entry of the row)`; a row of zeros is scaled like the row with the largest entry.
 pub(crate) fn scales(pattern: &Pattern, values: &[f64]) -> Vec<f64> {
     let mut largest = vec![0.0_f64; pattern.size()];
     for (row, value) in pattern.rows.iter().zip(values) {
@@ -264,7 +265,7 @@ pub(crate) fn scales(pattern: &Pattern, values: &[f64]) -> Vec<f64> {
     }
     let most = largest.iter().fold(0.0_f64, |most, value| most.max(*value));
     let usual = if most > 0.0 { most } else { 1.0 };
-    // Half the binary exponent, taken off the number itself.
+    // The binary exponent, from the bits of the number.
     let exponent = |value: f64| ((value.to_bits() >> 52) & 0x7ff) as i64 - 1023;
     let power = |value: &f64| {
         let value = if *value > 0.0 { *value } else { usual };

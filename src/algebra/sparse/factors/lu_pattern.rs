@@ -1,15 +1,15 @@
-//! Where factors without symmetry, of a matrix with a symmetric pattern, have entries.
+//! The patterns of the unsymmetric factors of a matrix with a symmetric pattern.
 
 use crate::algebra::sparse::factors::symbolic::Symbolic;
 use crate::resources::budget::{self, Taken};
 
-/// Columns between two looks at whether the solve goes on.
+/// Columns between two budget checks.
 const COLUMNS_AT_ONCE: usize = 256;
 
-/// Where `L` (by columns) and `U` (by columns) have entries off the diagonal.
+/// The patterns of `L` and `U` off the diagonal, both by columns.
 #[derive(Debug)]
 pub(crate) struct LuPattern {
-    /// Unknown at each place of the order, and place of each unknown.
+    /// Unknown at each place of the elimination order, and place of each unknown.
     pub order: Vec<usize>,
     pub place_of: Vec<usize>,
     /// Rows below the diagonal of each column of `L`.
@@ -18,14 +18,14 @@ pub(crate) struct LuPattern {
     /// Rows above the diagonal of each column of `U`, in ascending order.
     upper_starts: Vec<usize>,
     pub upper_rows: Vec<usize>,
-    /// Multiplications of a factorisation.
+    /// Number of multiplications of a factorisation.
     pub work: u64,
     _held: Taken,
 }
 
 impl LuPattern {
-    /// Of a symmetric pattern by columns, in the order of its symmetric factorisation: by the elimination tree (J. W. H. Liu,
-    /// SIAM J. Matrix Anal. Appl. 11 (1990) 134, doi:10.1137/0611010).
+    /// The patterns for a symmetric pattern by columns, in the order of its symmetric factorisation, from the
+    /// elimination tree (J. W. H. Liu, SIAM J. Matrix Anal. Appl. 11 (1990) 134, doi:10.1137/0611010).
     pub fn new(starts: &[usize], rows: &[usize], symbolic: &Symbolic) -> Self {
         let size = starts.len().saturating_sub(1);
         let order: Vec<usize> = match symbolic.cholesky.perm() {

@@ -1,13 +1,13 @@
-//! Sparse matrices with thin borders and their factorisations.
+//! Sparse matrices with narrow borders and their factorisations.
 //!
-//! | file | what it holds |
+//! | file | contents |
 //! |---|---|
-//! | `pattern` | where a matrix may have entries, found once |
-//! | `symbolic` | the order of elimination that keeps its factors sparse (AMD), and what they take |
-//! | `bordered_matrix` | the matrix as it is assembled |
-//! | `ldl`, `supernodal_ldl` | `K = L D Lᵀ`; small pivots are raised, and the raise is taken back by a border; large ones in pieces |
+//! | `pattern` | the sparsity pattern of a matrix, found once |
+//! | `symbolic` | the elimination order that keeps the factors sparse (AMD), and the size and work of a factor |
+//! | `bordered_matrix` | the assembled matrix |
+//! | `ldl`, `supernodal_ldl` | `K = L D Lᵀ`: small pivots raised, increments removed by borders; in pieces if large |
 //! | `cholesky` | whether a symmetric matrix is positive definite |
-//! | `static_pivot_lu`, `lu_pattern` | `K = L U` in the order of the symmetric factors, and where these have entries |
+//! | `static_pivot_lu`, `lu_pattern` | `K = L U` in the order of the symmetric factors, and the factors' patterns |
 //! | `pivoted_lu` | LU of any sparse matrix |
 //! | `entries` | entries of a row or a column |
 

@@ -1,4 +1,4 @@
-//! Where a symmetric sparse matrix may have entries, and the order in which it is eliminated.
+//! The sparsity pattern of a symmetric matrix and its elimination order.
 
 use crate::algebra::sparse::constrained_nodes::node_cache::LastNodes;
 use crate::algebra::sparse::factors::lu_pattern::LuPattern;
@@ -7,30 +7,30 @@ use crate::resources::budget::{self, Taken};
 use faer::sparse::SymbolicSparseColMatRef;
 use std::sync::OnceLock;
 
-/// Work of a factorisation by entry of the factor from which it goes by dense blocks: those of a plane lattice of 10,000
-/// unknowns take two thirds of the time so.
+/// Multiplications per entry of the factor from which the factorisation works by dense blocks, in two thirds of the
+/// time for a plane lattice of 10,000 unknowns.
 const BY_BLOCKS: f64 = 10.0;
 
-/// The entries of a symmetric matrix, both triangles, column by column; with the symbolic factorisation.
+/// The sparsity pattern of a symmetric matrix, both triangles by columns, with its symbolic factorisation.
 #[derive(Debug)]
 pub struct Pattern {
     size: usize,
-    /// First entry of each column, and the number of entries.
+    /// Index of the first entry of each column, followed by the number of entries.
     pub(crate) starts: Vec<usize>,
     pub(crate) rows: Vec<usize>,
-    /// Place of the transposed entry.
+    /// Index of the transposed entry of each entry.
     pub(crate) mirrors: Vec<usize>,
     pub(crate) symbolic: Symbolic,
-    /// Made when first needed.
+    /// Computed when first needed.
     fill: OnceLock<LuPattern>,
     pub(crate) last_nodes: LastNodes,
     _held: Taken,
 }
 
 impl Pattern {
-    /// A pattern with entries on the diagonal and at the given `(row, column)` and their transposes, in any order, repeated
-    /// or not. `None` where a place is outside or the system has no memory. Where the factors would be too large, the
-    /// budget of the solve under way ends it.
+    /// A pattern with entries on the diagonal, at the given `(row, column)` and at their transposes, in any order, with
+    /// or without repetition. `None` where an index is out of range or memory runs out. The budget ends the current
+    /// solve where the factors would be too large.
     pub fn new(size: usize, entries: impl IntoIterator<Item = (usize, usize)>) -> Option<Self> {
         let mut places: Vec<(usize, usize)> = (0..size).map(|index| (index, index)).collect();
         for (row, column) in entries {
@@ -48,7 +48,8 @@ impl Pattern {
         places.iter().for_each(|(column, _)| starts[column + 1] += 1);
         (0..size).for_each(|column| starts[column + 1] += starts[column]);
         let rows: Vec<usize> = places.iter().map(|(_, row)| *row).collect();
-        // The entries are sorted by column, then row: taken so, the transposed ones come in order in each column.
+        // The entries are sorted by column, then row: in this sequence the transposed entries appear in order in each
+        // column.
         let mut next = starts.clone();
         let mirrors = rows
             .iter()
@@ -64,7 +65,7 @@ impl Pattern {
         Some(Self { size, starts, rows, mirrors, symbolic, fill, last_nodes, _held: held })
     }
 
-    /// Rows of the matrix.
+    /// Number of rows of the matrix.
     pub fn size(&self) -> usize {
         self.size
     }
@@ -79,14 +80,14 @@ impl Pattern {
         self.symbolic.cholesky.len_val()
     }
 
-    /// Place of an entry among all; `None` where there is none.
+    /// Index of an entry among all entries; `None` outside the pattern.
     pub fn place(&self, row: usize, column: usize) -> Option<usize> {
         let start = *self.starts.get(column)?;
         let rows = self.rows.get(start..*self.starts.get(column + 1)?)?;
         rows.binary_search(&row).ok().map(|index| start + index)
     }
 
-    /// Where unsymmetric factors have entries.
+    /// The patterns of the unsymmetric factors.
     pub(crate) fn fill(&self) -> &LuPattern {
         self.fill.get_or_init(|| LuPattern::new(&self.starts, &self.rows, &self.symbolic))
     }

@@ -1,4 +1,4 @@
-//! Sparse LU factorisation of any square matrix, by its entries.
+//! Sparse LU factorisation of any square matrix given by its entries.
 
 use crate::algebra::dense::solve_counters::count_solves;
 use crate::algebra::sparse::factors::symbolic::allow_factor;
@@ -8,12 +8,13 @@ use faer::linalg::solvers::SolveCore;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMat, Triplet};
 
-/// Entries up to which factors are small in any case.
+/// Number of entries up to which the factors are small in any case.
 const FEW_ENTRIES: usize = 20_000;
-/// Multiplications of a factorisation that cannot be broken off. Counted as without exchanges, of which there are some.
+/// Largest number of multiplications of a factorisation that cannot be interrupted, counted as if without row
+/// exchanges.
 const MOST_IN_ONE_PIECE: u64 = 1_000_000_000;
 
-/// `D⁻¹ A = L U` with permutations, `D` the sizes of the rows.
+/// The factorisation `D⁻¹ A = L U` with permutations; `D` contains the largest magnitude of each row.
 pub struct GeneralLu {
     lu: Lu<usize, f64>,
     scales: Vec<f64>,
@@ -23,8 +24,8 @@ pub struct GeneralLu {
 }
 
 impl GeneralLu {
-    /// Entries at the same place add up. What depends on the pattern alone is taken over from `before` where that has the
-    /// same. `None` where it fails; a singular matrix may pass, and shows in the residual.
+    /// Factorises; entries at the same place add up. The symbolic factorisation is taken from `before` where the
+    /// patterns agree. `None` where the factorisation fails; a singular matrix may pass and shows in the residual.
     pub fn new(size: usize, mut entries: Vec<Triplet<usize, usize, f64>>, before: Option<&Self>) -> Option<Self> {
         let mut scales = vec![0.0_f64; size];
         entries.iter().for_each(|entry| scales[entry.row] = scales[entry.row].max(entry.val.abs()));
@@ -50,7 +51,7 @@ impl GeneralLu {
         Some(Self { lu, scales, symbolic, columns, rows })
     }
 
-    /// Overwrites a right-hand side by the solution; `false` where that is not finite.
+    /// Overwrites a right-hand side by the solution; `false` where the solution is not finite.
     pub fn solve(&self, values: &mut [f64]) -> bool {
         count_solves(1);
         values.iter_mut().zip(&self.scales).for_each(|(value, scale)| *value /= scale);
@@ -59,7 +60,7 @@ impl GeneralLu {
         values.iter().all(|value| value.is_finite())
     }
 
-    /// The same for the transpose of the matrix.
+    /// Solves with the transposed matrix; `false` where the solution is not finite.
     pub fn solve_transposed(&self, values: &mut [f64]) -> bool {
         count_solves(1);
         let size = values.len();
@@ -90,7 +91,7 @@ mod tests {
         assert!(product.iter().zip(x).all(|(found, x)| (found - x).abs() < 1e-13), "{product:?}");
     }
 
-    /// Small patterns and filled ones, which are factorised by blocks.
+    /// Small patterns, and filled patterns, which are factorised by blocks.
     #[test]
     fn the_transpose_is_solved_with_the_same_factors() {
         for (size, step) in [(4, 2), (40, 7), (150, 1)] {

@@ -1,9 +1,10 @@
 //! `K = L U` of a sparse matrix with a symmetric pattern, without exchanges.
 //!
-//! Friction makes a tangent unsymmetric where contacts slip; its pattern stays. The order is that of the symmetric
-//! factorisation, rows and columns are brought to entries of about 1, and a pivot that is lost in cancellation is raised by
-//! 1 as there; what is lost without exchanges is mended by refinement, and seen in the residual where it is not (X. S. Li,
-//! J. W. Demmel, ACM Trans. Math. Softw. 29 (2003) 110, doi:10.1145/779359.779361: static pivoting).
+//! Friction makes a tangent unsymmetric where contacts slip; its pattern remains symmetric. The elimination order is
+//! that of the symmetric factorisation; rows and columns are scaled to entries of about 1, and a pivot lost to
+//! cancellation is raised by 1 as in the symmetric factorisation. Iterative refinement recovers the digits lost without
+//! row exchanges; the residual shows where it does not (X. S. Li, J. W. Demmel, ACM Trans. Math. Softw. 29 (2003) 110,
+//! doi:10.1145/779359.779361: static pivoting).
 
 use crate::algebra::sparse::factors::ldl::{SMALL, scales};
 use crate::algebra::sparse::factors::pattern::Pattern;
@@ -16,20 +17,21 @@ pub(crate) struct UnsymmetricFactor {
     lower: Vec<f64>,
     upper: Vec<f64>,
     pivots: Vec<f64>,
-    /// What rows and columns were multiplied by: powers of two.
+    /// Scale factors of rows and columns: powers of two.
     scales: Vec<f64>,
-    /// Unknown and raise, in the units of the matrix.
+    /// Unknowns with raised diagonal entries, and the increments in the units of the matrix.
     raised: Vec<(usize, f64)>,
     _held: Taken,
 }
 
-/// Raises beyond which there is something else wrong.
+/// Number of raised pivots beyond which the factorisation is given up.
 const MOST_RAISED: usize = 64;
-/// Multiplications between two looks at whether the solve goes on.
+/// Multiplications between two budget checks.
 const AT_ONCE: usize = 1_000_000;
 
 impl UnsymmetricFactor {
-    /// Factorises; `values` as the pattern has them. `None` where a number is not finite or too many pivots are lost.
+    /// Factorises; `values` in the sequence of the pattern. `None` where a pivot is not finite or too many pivots are
+    /// lost.
     pub fn new(pattern: Arc<Pattern>, values: &[f64]) -> Option<Self> {
         let size = pattern.size();
         let scales = scales(&pattern, values);
@@ -45,7 +47,7 @@ impl UnsymmetricFactor {
             _held: held,
         };
         let mut work = vec![0.0; size];
-        // Multiplications since the last look at the flag, roughly.
+        // Approximate number of multiplications since the last budget check.
         let mut ahead = 0;
         for column in 0..size {
             let unknown = fill.order[column];
@@ -86,7 +88,7 @@ impl UnsymmetricFactor {
         Some(factor)
     }
 
-    /// Unknowns whose diagonal entry was raised, and by how much.
+    /// The unknowns whose diagonal entries were raised, and the increments.
     pub fn raised(&self) -> &[(usize, f64)] {
         &self.raised
     }
@@ -96,15 +98,15 @@ impl UnsymmetricFactor {
         self.pivots.iter().fold(1.0, |sign, pivot| sign * pivot.signum())
     }
 
-    /// Smallest pivot over the largest one.
+    /// Ratio of the smallest to the largest pivot magnitude.
     pub fn pivot_ratio(&self) -> f64 {
         let (least, most) =
             self.pivots.iter().fold((f64::INFINITY, 0.0_f64), |(l, m), pivot| (l.min(pivot.abs()), m.max(pivot.abs())));
         if most > 0.0 { least / most } else { 1.0 }
     }
 
-    /// Solves with the raised matrix for right-hand sides one after the other, overwritten; `false` when a result is not
-    /// finite.
+    /// Solves with the raised matrix for consecutive right-hand sides, overwritten by the solutions; `false` when a
+    /// result is not finite.
     pub fn solve(&self, right_hand_sides: &mut [f64], count: usize) -> bool {
         let size = self.pattern.size();
         if size == 0 || count == 0 {

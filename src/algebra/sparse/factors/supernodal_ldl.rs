@@ -1,23 +1,24 @@
-//! `L D Lᵀ` by blocks, as the library's, in pieces between which it is asked whether the solve goes on.
+//! Supernodal `L D Lᵀ` factorisation in the library's storage format, in pieces with a budget check between them.
 //!
-//! A block of columns with the same rows below (a supernode) takes what the blocks before it have for it, a panel of
-//! columns at a time, and is then factorised panel by panel (E. G. Ng, B. W. Peyton, SIAM J. Sci. Comput. 14 (1993) 1034,
-//! doi:10.1137/0914063: left-looking).
+//! A block of columns with the same rows below (a supernode) first receives the updates by the preceding blocks, one
+//! panel of columns at a time, and is then factorised panel by panel (E. G. Ng, B. W. Peyton, SIAM J. Sci. Comput. 14
+//! (1993) 1034, doi:10.1137/0914063: left-looking).
 
 use crate::resources::budget;
 use faer::linalg::matmul::matmul;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::{Accum, MatMut, MatRef, Par};
 
-/// Columns of a panel.
+/// Number of columns of a panel.
 const PANEL: usize = 64;
-/// Multiplications of a piece: about a tenth of a second.
+/// Multiplications of one piece: about a tenth of a second.
 const PIECE: usize = 200_000_000;
 
-/// Calls with the places of the rows and the values of a column of the matrix, on and below the diagonal.
+/// Calls its second argument with row and value of each entry of a matrix column, on and below the diagonal.
 pub(crate) type EachBelow<'a> = &'a dyn Fn(usize, &mut dyn FnMut(usize, f64));
 
-/// Writes the factors over `values`, as a symbolic factorisation by blocks has them. Pivots up to `zero` become `zero`.
+/// Overwrites `values` with the factors, in the layout of a supernodal symbolic factorisation. Pivots of magnitude up
+/// to `zero` become `±zero`.
 pub(crate) fn factorise(
     symbolic: &SymbolicSupernodalCholesky<usize>,
     values: &mut [f64],
@@ -29,7 +30,7 @@ pub(crate) fn factorise(
     for block in 0..symbolic.n_supernodes() {
         block_of[symbolic.supernode_begin()[block]..symbolic.supernode_end()[block]].fill(block);
     }
-    // Blocks that are done, with the first of their rows that is not, by the block to which that belongs.
+    // For each block, the completed blocks that update it next, each with the first of its rows in the block.
     let mut waiting: Vec<Vec<(usize, usize)>> = vec![Vec::new(); symbolic.n_supernodes()];
     let mut place_in_block = vec![0; size];
     let mut scratch = Scratch::default();
@@ -61,12 +62,12 @@ pub(crate) fn factorise(
     }
 }
 
-/// Columns with the same rows below.
+/// A block of columns with the same rows below.
 struct Block<'a> {
     begin: usize,
     end: usize,
     pattern: &'a [usize],
-    /// Of its values.
+    /// Index of the first value of the block.
     first: usize,
 }
 
@@ -106,8 +107,8 @@ impl Scratch {
         }
     }
 
-    /// Takes from a block what an earlier one has in the rows of its pattern from the first of `own` on; `own` are those
-    /// that are columns of the block.
+    /// Subtracts from a block the update by an earlier block, in the rows of the earlier block's pattern from the first
+    /// of `own` on; the rows `own` are columns of the updated block.
     fn take_from(
         &mut self,
         earlier: &Block<'_>,
@@ -147,7 +148,7 @@ impl Scratch {
     }
 }
 
-/// Factorises a block from which the others were taken.
+/// Factorises a block after all updates by earlier blocks.
 fn factorise_block(target: &mut [f64], rows: usize, columns: usize, zero: f64, scratch: &mut Scratch) {
     for start in (0..columns).step_by(PANEL) {
         let panel = start..columns.min(start + PANEL);
@@ -198,7 +199,7 @@ mod tests {
     use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
     use faer::sparse::linalg::cholesky::SymbolicCholeskyRaw;
 
-    /// A lattice in space, indefinite: the last blocks are wider than a panel.
+    /// An indefinite matrix on a cubic lattice: the last blocks are wider than a panel.
     #[test]
     fn the_factors_are_those_of_the_library() {
         const SIDE: usize = 11;

@@ -1,9 +1,11 @@
-//! The order of elimination and what a factorisation in it takes, before anything of its size is allocated.
+//! The elimination order, and the size and work of a factorisation in this order, before memory of that size is
+//! allocated.
 //!
-//! The order is that of P. R. Amestoy, T. A. Davis, I. S. Duff, SIAM J. Matrix Anal. Appl. 17 (1996) 886,
-//! doi:10.1137/S0895479894278952. The entries of each column of the factor follow from the elimination tree, in memory that
-//! goes with the matrix and hardly more time (J. R. Gilbert, E. G. Ng, B. W. Peyton, SIAM J. Matrix Anal. Appl. 15 (1994)
-//! 1075, doi:10.1137/S0895479892236921): a graph without small separators may fill its factor nearly whole.
+//! The order is the approximate minimum degree order of P. R. Amestoy, T. A. Davis, I. S. Duff, SIAM J. Matrix Anal.
+//! Appl. 17 (1996) 886, doi:10.1137/S0895479894278952. The number of entries of each column of the factor follows from
+//! the elimination tree, in memory proportional to the matrix and almost linear time (J. R. Gilbert, E. G. Ng, B. W.
+//! Peyton, SIAM J. Matrix Anal. Appl. 15 (1994) 1075, doi:10.1137/S0895479892236921): a graph without small separators
+//! may fill its factor almost completely.
 
 use crate::resources::budget::{self, Breach};
 use faer::Side;
@@ -18,13 +20,13 @@ use faer::sparse::linalg::{SupernodalThreshold, amd};
 
 const NONE: usize = usize::MAX;
 
-/// Multiplications of a factorisation that is done in one piece: about a tenth of a second.
+/// Largest number of multiplications of a factorisation in one piece: about a tenth of a second.
 const MOST_AT_ONCE: u64 = 200_000_000;
 
-/// The unknown at each place, and the place of each unknown.
+/// The unknown at each place of the elimination order, and the place of each unknown.
 type Order<'a> = (&'a [usize], &'a [usize]);
 
-/// A symbolic factorisation, and what it takes.
+/// A symbolic factorisation with its size and work.
 #[derive(Debug)]
 pub(crate) struct Symbolic {
     pub cholesky: SymbolicCholesky<usize>,
@@ -32,17 +34,16 @@ pub(crate) struct Symbolic {
 }
 
 impl Symbolic {
-    /// Of a pattern by columns, one triangle or both, and `whole`, the same with both. By blocks from so many multiplications
-    /// for each entry of the factor.
+    /// The symbolic factorisation of a pattern by columns, one triangle or both; `whole` is the pattern of both
+    /// triangles. The factorisation works by blocks from `by_blocks` multiplications per entry of the factor.
     ///
-    /// The budget of the solve under way ends it where the factors would be too large; `None` where the system has no
-    /// memory.
+    /// The budget ends the current solve where the factors would be too large; `None` where memory runs out.
     pub fn new(given: (&[usize], &[usize]), whole: (&[usize], &[usize]), by_blocks: f64) -> Option<Self> {
         let size = given.0.len().checked_sub(1)?;
         let (order, place_of, foreseen) = ordered(given.0, given.1)?;
         let fill = Fill::new(&order, &place_of, whole.0, whole.1);
         budget::allow_factor(fill.entries, fill.multiplications);
-        // By the counts of the order itself, which are bounds from above.
+        // From the operation counts of the ordering, which are upper bounds.
         let is_dense = foreseen / fill.entries.max(1) as f64 > by_blocks;
         let threshold = if is_dense || fill.multiplications > MOST_AT_ONCE {
             SupernodalThreshold::FORCE_SUPERNODAL
@@ -61,7 +62,7 @@ impl Symbolic {
         Some(Self { cholesky, fill })
     }
 
-    /// Where it is done in pieces: the blocks, the unknown at each place of the order and the place of each unknown.
+    /// For a factorisation in pieces: the blocks, the unknown at each place of the order and the place of each unknown.
     pub fn in_pieces(&self) -> Option<(&SymbolicSupernodalCholesky<usize>, Order<'_>)> {
         match self.cholesky.raw() {
             SymbolicCholeskyRaw::Supernodal(blocks) if self.fill.multiplications > MOST_AT_ONCE => {
@@ -71,7 +72,7 @@ impl Symbolic {
         }
     }
 
-    /// Numbers that it holds.
+    /// Number of stored indices.
     pub fn indices(&self) -> usize {
         let of_factor = match self.cholesky.raw() {
             SymbolicCholeskyRaw::Simplicial(simplicial) => simplicial.row_idx().len(),
@@ -81,9 +82,9 @@ impl Symbolic {
     }
 }
 
-/// Lets the budget of the solve under way refuse a factorisation without exchanges of a symmetric matrix with entries at
-/// these places, and at their mirror images, by others than this crate. They do it in one piece, of no more than so many
-/// multiplications.
+/// Lets the budget of the current solve refuse a factorisation, by other crates and without row exchanges, of a
+/// symmetric matrix with entries at the given places and their mirror images. Such a factorisation runs in one piece of
+/// at most `most` multiplications.
 pub fn allow_factor(size: usize, entries: impl IntoIterator<Item = (usize, usize)>, most: u64) {
     let mut places: Vec<(usize, usize)> = (0..size).map(|index| (index, index)).collect();
     places.extend(entries.into_iter().flat_map(|(row, column)| [(row, column), (column, row)]));
@@ -99,13 +100,13 @@ pub fn allow_factor(size: usize, entries: impl IntoIterator<Item = (usize, usize
     if fill.multiplications > most {
         budget::end(Breach::FactorWork { asked: fill.multiplications, allowed: most });
     }
-    // Given back with the matrices of the program, whose size it has; the look is at the whole.
+    // Taken and released at once: only the total is checked.
     drop(budget::take::<f64>(usize::try_from(2 * fill.entries).unwrap_or(usize::MAX)));
     budget::spend(usize::try_from(fill.multiplications).unwrap_or(usize::MAX));
 }
 
-/// The order of elimination of a pattern by columns, the place of each unknown in it, and the multiplications and divisions
-/// that it foresees. `None` where the system has no memory.
+/// The elimination order of a pattern by columns, the place of each unknown in the order, and the estimated number of
+/// multiplications and divisions. `None` where memory runs out.
 fn ordered(starts: &[usize], rows: &[usize]) -> Option<(Vec<usize>, Vec<usize>, f64)> {
     let size = starts.len().checked_sub(1)?;
     let view = SymbolicSparseColMatRef::new_checked(size, size, starts, None, rows);
@@ -120,10 +121,10 @@ fn ordered(starts: &[usize], rows: &[usize]) -> Option<(Vec<usize>, Vec<usize>, 
     Some((order, place_of, flops.n_div + flops.n_mult_subs_ldl))
 }
 
-/// What a factorisation takes.
+/// The size and work of a factorisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Fill {
-    /// Of the triangular factor, its diagonal with it.
+    /// Entries of the triangular factor, diagonal included.
     pub entries: u64,
     pub multiplications: u64,
 }
@@ -144,8 +145,8 @@ impl Fill {
     }
 }
 
-/// The parent of each column; [`NONE`] of a root (J. W. H. Liu, SIAM J. Matrix Anal. Appl. 11 (1990) 134,
-/// doi:10.1137/0611010).
+/// The parent of each column in the elimination tree; [`NONE`] for a root (J. W. H. Liu, SIAM J. Matrix Anal. Appl. 11
+/// (1990) 134, doi:10.1137/0611010).
 fn elimination_tree<I: Iterator<Item = usize>>(size: usize, column: impl Fn(usize) -> I) -> Vec<usize> {
     let (mut parent, mut ancestor) = (vec![NONE; size], vec![NONE; size]);
     for place in 0..size {
@@ -163,7 +164,7 @@ fn elimination_tree<I: Iterator<Item = usize>>(size: usize, column: impl Fn(usiz
     parent
 }
 
-/// Children before their parents, those of one next to each other.
+/// A postorder of the tree: children before their parents, each subtree contiguous.
 fn postorder(parent: &[usize]) -> Vec<usize> {
     let size = parent.len();
     let (mut first_child, mut next_child) = (vec![NONE; size], vec![NONE; size]);
@@ -190,16 +191,16 @@ fn postorder(parent: &[usize]) -> Vec<usize> {
     order
 }
 
-/// Entries of each column of the factor, that of the diagonal with them.
+/// Number of entries of each column of the factor, diagonal included.
 fn column_counts<I: Iterator<Item = usize>>(
     parent: &[usize],
     postorder: &[usize],
     column: impl Fn(usize) -> I,
 ) -> Vec<usize> {
     let size = parent.len();
-    // Where the first descendant of each node stands.
+    // Postorder number of the first descendant of each node.
     let mut first = vec![NONE; size];
-    // The entries of a column less those of its children; sums of them may be below zero on the way.
+    // Entries of a column minus those of its children; partial sums may be negative.
     let mut counts = vec![0_isize; size];
     for (place, node) in postorder.iter().enumerate() {
         counts[*node] = isize::from(first[*node] == NONE);
@@ -216,7 +217,7 @@ fn column_counts<I: Iterator<Item = usize>>(
             counts[parent[node]] -= 1;
         }
         for row in column(node).filter(|row| *row > node) {
-            // Whether the column is a leaf of the subtree of the row.
+            // Only a leaf of the row's subtree counts.
             if latest_first[row] != NONE && first[node] <= latest_first[row] {
                 continue;
             }
@@ -239,7 +240,7 @@ fn column_counts<I: Iterator<Item = usize>>(
     counts.into_iter().map(|count| usize::try_from(count).unwrap_or(0)).collect()
 }
 
-/// The root of a set, whose ways to it are made short.
+/// The root of a set, with path compression.
 fn common_ancestor(ancestor: &mut [usize], node: usize) -> usize {
     let mut root = node;
     while ancestor[root] != root {

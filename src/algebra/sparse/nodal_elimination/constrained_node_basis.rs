@@ -1,4 +1,4 @@
-//! A held node made from the borders of a matrix, and what it does to the matrix.
+//! The construction of a constrained node from the borders of a matrix, and its effect on the matrix.
 
 use crate::algebra::sparse::constrained_nodes::held_node::{Coupling, HeldNode, gathered, times, transposed_times};
 use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Friction, Holding, IndexList};
@@ -7,12 +7,13 @@ use nalgebra::{Matrix3, Vector3};
 use smallvec::SmallVec;
 use std::ops::Range;
 
-/// Relative size of what counts as nothing.
+/// Relative magnitude up to which entries count as zero.
 const NOTHING: f64 = 1e-14;
-/// A node whose held directions are nearer than this to each other is left to the borders.
+/// A node whose constrained directions are closer than this to linear dependence remains in the borders.
 const DEPENDENT: f64 = 1e-6;
 
-/// Adds its numbers to those of the nodes before it, and its couplings to theirs; with the place that it is to have.
+/// Builds the node with index `place`; appends its matrices to `numbers` and its couplings to `coupled`. `None` where
+/// the holding cannot be eliminated.
 pub(super) fn from_borders(
     matrix: &Bordered,
     holding: &Holding,
@@ -75,7 +76,7 @@ pub(super) fn from_borders(
     })
 }
 
-/// `Qᵀ K Q`; columns of one node have one pattern.
+/// Overwrites the matrix by `Qᵀ K Q`; the columns of one node have the same pattern.
 pub(super) fn rotate_matrix(node: &HeldNode, matrix: &Bordered, numbers: &[f64], values: &mut [f64]) {
     if !node.turns {
         return;
@@ -90,7 +91,7 @@ pub(super) fn rotate_matrix(node: &HeldNode, matrix: &Bordered, numbers: &[f64],
     }
 }
 
-/// Calls with the places of the entries that the node's columns (or rows) have in each row (or column).
+/// Calls `each` with the indices of the entries of the node's columns (or rows) in each row (or column).
 fn each_place(node: &HeldNode, matrix: &Bordered, by_row: bool, mut each: impl FnMut([usize; 3])) {
     let pattern = &matrix.pattern;
     let mut starts = [0; 3];
@@ -105,7 +106,8 @@ fn each_place(node: &HeldNode, matrix: &Bordered, by_row: bool, mut each: impl F
     }
 }
 
-/// The entries of its columns (or rows) `H`, added to those taken before, and where each of them begins.
+/// Appends the entries of the node's columns (or rows) `H` to `taken`, and the index of the first entry of each to
+/// `starts`.
 pub(super) fn take(
     node: &HeldNode,
     matrix: &Bordered,
@@ -126,7 +128,7 @@ pub(super) fn take(
     }
 }
 
-/// Rows `T` less `F R⁻¹` times rows `H`.
+/// Subtracts `F R⁻¹` times rows `H` from rows `T`.
 pub(super) fn fold(node: &HeldNode, matrix: &Bordered, numbers: &[f64], values: &mut [f64]) {
     if !node.folds {
         return;
@@ -138,7 +140,7 @@ pub(super) fn fold(node: &HeldNode, matrix: &Bordered, numbers: &[f64], values: 
     });
 }
 
-/// Leaves a one on the diagonal in the held rows and columns.
+/// Clears the constrained rows and columns, with 1 left on the diagonal.
 pub(super) fn clear(node: &HeldNode, matrix: &Bordered, values: &mut [f64]) {
     let pattern = &matrix.pattern;
     for column in node.held() {
@@ -149,11 +151,11 @@ pub(super) fn clear(node: &HeldNode, matrix: &Bordered, values: &mut [f64]) {
     }
 }
 
-/// What the borders that hold a node have at its unknowns.
+/// The entries of a node's constraint borders at its unknowns.
 struct LocalBlocks {
     rows: Matrix3<f64>,
     columns: Matrix3<f64>,
-    /// What they have at other borders.
+    /// Entries of the constraint rows at other borders.
     couplings: SmallVec<[Coupling; 3]>,
 }
 
@@ -187,7 +189,7 @@ fn local_blocks(
     Some(LocalBlocks { rows, columns, couplings })
 }
 
-/// The node's unknowns, those first that are held where border rows hold as many as they name.
+/// The node's unknowns, constrained unknowns first where the border rows involve as many unknowns as there are rows.
 fn held_first(matrix: &Bordered, holding: &Holding) -> IndexList {
     if holding.rows.len() == holding.unknowns.len() {
         return holding.unknowns.clone();
@@ -215,7 +217,7 @@ fn same_columns(matrix: &Bordered, unknowns: &[usize]) -> bool {
     unknowns.len() <= 3 && unknowns.iter().all(|unknown| rows(*unknown) == rows(unknowns[0]))
 }
 
-/// The leading block, with ones on the rest of the diagonal.
+/// The leading block, with 1 on the rest of the diagonal.
 fn leading(matrix: &Matrix3<f64>, size: usize) -> Matrix3<f64> {
     Matrix3::from_fn(|row, column| match (row < size, column < size) {
         (true, true) => matrix[(row, column)],
@@ -223,14 +225,14 @@ fn leading(matrix: &Matrix3<f64>, size: usize) -> Matrix3<f64> {
     })
 }
 
-/// Adds rows of the first columns of a matrix, by columns.
+/// Appends the given rows of the first columns of a matrix, by columns.
 fn put(matrix: &Matrix3<f64>, rows: Range<usize>, columns: usize, numbers: &mut Vec<f64>) {
     for column in 0..columns {
         rows.clone().for_each(|row| numbers.push(matrix[(row, column)]));
     }
 }
 
-/// The inverse of a leading block that [`leading`] made.
+/// The inverse of a leading block from [`leading`]; `None` where the block is nearly singular.
 fn inverse(matrix: &Matrix3<f64>, size: usize) -> Option<Matrix3<f64>> {
     if size == 1 {
         let own = 1.0 / matrix[(0, 0)];

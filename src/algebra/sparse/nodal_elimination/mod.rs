@@ -1,16 +1,16 @@
-//! Nodes that border rows hold, eliminated where they are.
+//! Elimination of constrained nodes, each within its own equations.
 //!
-//! A closed contact adds rows `C u_i + d L = g` at its node `i` and reactions `r` in the node's own equations, so that its
-//! saddle point needs no border: with `Q` orthogonal, `y = Qᵀ u_i = (y_H, y_T)` and `C Q = [M, 0]`,
+//! A closed contact adds rows `C u_i + d L = g` at its node `i` and reactions `r` in the node's own equations, so the
+//! saddle-point problem needs no border: with `Q` orthogonal, `y = Qᵀ u_i = (y_H, y_T)` and `C Q = [M, 0]`,
 //!
 //! ```text
 //! y_H = M⁻¹ (g - d L),      R r = f_H - (K y)_H - ...,      QᵀB = [R; F]
 //! ```
 //!
-//! Rows and columns `H` leave the matrix (a one stays on the diagonal), whose pattern remains. Without friction `F = 0`
-//! and `r` follows in the end. With friction (`F != 0`) there are two ways: `r` stays a border, and the equations `H` are
-//! its rows, so that the matrix stays symmetric; or the equations `H` times `F R⁻¹` are taken from the equations `T`, which
-//! makes it unsymmetric, and `r` follows in the end, too.
+//! Rows and columns `H` are removed from the matrix (with 1 left on the diagonal); its pattern remains. Without
+//! friction, `F = 0` and back substitution gives `r`. With friction (`F != 0`) there are two options: `r` remains a
+//! border, with the equations `H` as its rows, and the matrix remains symmetric; or `F R⁻¹` times the equations `H` is
+//! subtracted from the equations `T`, which makes the matrix unsymmetric, and back substitution gives `r` as well.
 
 pub(crate) mod constrained_node_basis;
 pub(crate) mod nodes;
@@ -25,10 +25,10 @@ use crate::algebra::sparse::factors::entries::SparseEntries;
 use smallvec::SmallVec;
 use std::sync::Arc;
 
-/// What is left of a matrix, and what was taken.
+/// The constrained nodes of a matrix, and the rows and columns `H` removed with them.
 pub(super) struct Elimination {
     nodes: Arc<Nodes>,
-    /// Where the columns and the rows `H` of all nodes begin.
+    /// Index of the first entry of each column and of each row `H` of all nodes.
     columns_at: Vec<u32>,
     rows_at: Vec<u32>,
     /// Entries of all rows and columns `H`.
@@ -36,7 +36,8 @@ pub(super) struct Elimination {
 }
 
 impl Elimination {
-    /// Eliminates; with the matrix that is left. A holding that cannot be eliminated so stays in the borders.
+    /// Eliminates the constrained nodes; returns the values of the remaining matrix, too. A holding that cannot be
+    /// eliminated in this way remains in the borders.
     pub fn new(matrix: &Bordered, holdings: &Holdings, friction: Friction) -> (Self, Vec<f64>) {
         let all = Nodes::of(matrix, holdings, friction);
         let (nodes, numbers) = (&all.nodes, &all.numbers);
@@ -46,7 +47,8 @@ impl Elimination {
         let most = nodes.iter().flat_map(HeldNode::held).map(|unknown| matrix.pattern.column(unknown).len());
         let mut entries = Vec::with_capacity(2 * most.sum::<usize>());
         let [mut rows_at, mut columns_at] = [(); 2].map(|()| Vec::with_capacity(held + 1));
-        // All rows and columns are taken before any is cleared: those of neighbours have entries in each other's.
+        // All rows and columns are extracted before any is cleared: neighbouring nodes have entries in each other's
+        // rows and columns.
         nodes
             .iter()
             .for_each(|node| constrained_node_basis::take(node, matrix, &values, true, &mut entries, &mut rows_at));
@@ -78,7 +80,7 @@ impl Elimination {
         self.taken(&self.columns_at, node, index)
     }
 
-    /// The column `H` of a held unknown.
+    /// The column `H` of a constrained unknown; `None` for other unknowns.
     pub fn stiffness_at(&self, unknown: usize) -> Option<&[(usize, f64)]> {
         let (node, local) = self.nodes.place_of[unknown]?;
         let node = &self.nodes()[node as usize];
@@ -95,13 +97,13 @@ impl Elimination {
         &self.entries[starts[place] as usize..starts[place + 1] as usize]
     }
 
-    /// Whether an unknown of the rotated system is held.
+    /// Whether an unknown of the rotated system is constrained.
     pub fn is_held(&self, unknown: usize) -> bool {
         self.nodes.place_of[unknown]
             .is_some_and(|(node, local)| (local as usize) < self.nodes()[node as usize].held_count())
     }
 
-    /// Entries of a row or a column over the rotated unknowns: those that are not held, and those that are.
+    /// The entries of a row or a column in the rotated unknowns: at free unknowns, and at constrained unknowns.
     pub fn rotated(&self, entries: &[(usize, f64)]) -> (SparseEntries, SparseEntries) {
         let (mut free, mut held) = (SparseEntries::with_capacity(entries.len()), SparseEntries::new());
         let mut at_nodes: SmallVec<[(u32, u32, f64); 8]> = SmallVec::new();
@@ -133,7 +135,8 @@ impl Elimination {
         (free, held)
     }
 
-    /// Splits entries of a column of the rotated matrix: adds to those that are not held, and to those that are.
+    /// Appends the entries of a column of the rotated matrix to those at free unknowns and those at constrained
+    /// unknowns.
     pub fn split_into(
         &self,
         entries: impl Iterator<Item = (usize, f64)>,
@@ -143,7 +146,8 @@ impl Elimination {
         entries.for_each(|entry| if self.is_held(entry.0) { &mut *held } else { &mut *free }.push(entry));
     }
 
-    /// What entries of a column at held unknowns become in the other equations of their nodes, where friction is folded.
+    /// The contributions of a column's entries at constrained unknowns to the free equations of their nodes, where
+    /// friction is eliminated.
     pub fn folded(&self, held: &[(usize, f64)]) -> SparseEntries {
         let mut free = SparseEntries::new();
         for (unknown, value) in held {
@@ -158,12 +162,12 @@ impl Elimination {
         free
     }
 
-    /// `Qᵀ x` or `Q x` at every node.
+    /// Applies `Qᵀ`, or `Q` if `back`, at every node.
     pub fn rotate(&self, x: &mut [f64], back: bool) {
         self.nodes().iter().filter(|node| node.turns).for_each(|node| node.turn(&self.nodes.numbers, x, back));
     }
 
-    /// Folds a right-hand side that was rotated.
+    /// Eliminates friction from a rotated right-hand side.
     pub fn fold(&self, x: &mut [f64]) {
         for node in self.nodes().iter().filter(|node| node.folds) {
             let (count, held) = (node.count(), node.held_count());

@@ -1,4 +1,4 @@
-//! All held nodes of a matrix, kept as long as they stay the same.
+//! All constrained nodes of a matrix, reused as long as they remain the same.
 
 use crate::algebra::sparse::constrained_nodes::held_node::HeldNode;
 use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Friction, Holdings};
@@ -8,12 +8,12 @@ use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::nodal_elimination::constrained_node_basis;
 use std::sync::Arc;
 
-/// Numbers of a node, and entries of its borders, as they mostly are in the plane.
+/// Usual number of matrix entries of a node, and of entries of its borders, in the plane.
 const NUMBERS: usize = 8;
 const BORDERS: usize = 14;
 
 impl Nodes {
-    /// Those of a matrix: of one before it where they are the same.
+    /// The nodes of a matrix, reused from an earlier matrix where they are the same.
     pub(super) fn of(matrix: &Bordered, holdings: &Holdings, friction: Friction) -> Arc<Self> {
         let fit = |nodes: &Self, enters: &Vec<bool>| nodes.fit(matrix, holdings, friction, enters);
         let make = |enters| Self::new(matrix, holdings, friction, enters);
@@ -30,7 +30,7 @@ impl Nodes {
             (Vec::with_capacity(NUMBERS * holdings.iter().len()), Vec::new(), 0);
         for holding in holdings.iter() {
             let free = holding.unknowns.iter().all(|unknown| place_of[*unknown].is_none());
-            // Reactions that enter border equations stay.
+            // Reactions with entries in border rows remain borders.
             if !free || holding.columns.iter().any(|column| enters[*column]) {
                 continue;
             }
@@ -60,7 +60,7 @@ impl Nodes {
         Self { nodes, numbers, couplings, place_of, friction, holdings: holdings.clone(), enters, borders: entries }
     }
 
-    /// Whether they are those of a matrix with this pattern, too.
+    /// Whether these nodes are valid for another matrix of this pattern.
     fn fit(&self, matrix: &Bordered, holdings: &Holdings, friction: Friction, enters: &[bool]) -> bool {
         self.friction == friction
             && self.holdings == *holdings
@@ -68,7 +68,7 @@ impl Nodes {
             && self.has_borders(matrix, holdings)
     }
 
-    /// Whether the entries of the rows and columns of the holdings are these.
+    /// Whether the rows and columns of the holdings have the stored entries.
     fn has_borders(&self, matrix: &Bordered, holdings: &Holdings) -> bool {
         let mut left = &self.borders[..];
         let is_next = |list: &SparseEntries| {
@@ -80,7 +80,7 @@ impl Nodes {
     }
 }
 
-/// Which border columns have entries in border rows.
+/// Whether each border column has entries in border rows.
 fn enters(matrix: &Bordered) -> Vec<bool> {
     let n = matrix.pattern.size();
     let mut enters = vec![false; matrix.lower.len()];
@@ -92,7 +92,7 @@ fn enters(matrix: &Bordered) -> Vec<bool> {
     enters
 }
 
-/// The rows and columns of holdings.
+/// The border rows and columns of the holdings.
 fn borders<'a>(matrix: &'a Bordered, holdings: &'a Holdings) -> impl Iterator<Item = &'a SparseEntries> {
     holdings.iter().flat_map(|holding| {
         let rows = holding.rows.iter().map(|row| &matrix.lower[*row]);

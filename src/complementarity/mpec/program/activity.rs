@@ -33,14 +33,14 @@ impl PairActivity {
 /// Activities of all pairs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Activities {
-    /// One a pair.
+    /// One per pair.
     pub pairs: Vec<PairActivity>,
-    /// One a cone pair.
+    /// One per cone pair.
     pub cones: Vec<ConeActivity>,
 }
 
 impl Activities {
-    /// At `x`, numbers up to `tolerance` counting as zero.
+    /// The activities at `x`; numbers up to `tolerance` count as zero.
     ///
     /// # Errors
     /// The quantity that is not finite.

@@ -1,20 +1,20 @@
-//! The second-order cone and what complementarity means on it.
+//! The second-order cone and complementarity on it.
 //!
 //! ```text
 //! K = { v = (v_0, v_t) : v_0 >= |v_t| },        a ∈ K,  b ∈ K,  a·b = 0
 //! ```
 //!
-//! `K` is its own dual. A vector has the spectral values `v_0 ∓ |v_t|`; its projection on `K` is the sum of the
-//! positive ones times their eigenvectors `½ (1, ∓ v_t/|v_t|)`. A complementary pair is the two projections of its own
-//! difference: `a = P(a - b)`, `b = P(b - a)`. So either one member vanishes, or both lie on the boundary, opposed:
-//! `b_t/b_0 = -a_t/a_0`.
+//! `K` is self-dual. A vector has the spectral values `v_0 ∓ |v_t|`; its projection on `K` is the sum of the positive
+//! spectral values times their spectral vectors `½ (1, ∓ v_t/|v_t|)`. The members of a complementary pair are the two
+//! projections of their difference: `a = P(a - b)`, `b = P(b - a)`. Hence either one member vanishes, or both lie on
+//! the boundary, opposed: `b_t/b_0 = -a_t/a_0`.
 //!
 //! Source: M. Fukushima, Z.-Q. Luo and P. Tseng, *Smoothing functions for second-order-cone complementarity problems*,
 //! SIAM J. Optim. 12 (2002), doi:10.1137/S1052623400380365 (spectral values, projection).
 
 use nalgebra::{DMatrix, DVector};
 
-/// Where a pair of complementary members of a cone lies.
+/// The position of a complementary pair relative to the cone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ConeActivity {
     /// `a = 0`, `b` inside the cone.
@@ -27,9 +27,9 @@ pub enum ConeActivity {
     FirstZeroSecondOnBoundary,
     /// `b = 0`, `a` on the boundary: biactive.
     SecondZeroFirstOnBoundary,
-    /// Both zero: biactive, and what could follow has infinitely many directions.
+    /// Both zero: biactive, with infinitely many possible directions of change.
     BothZero,
-    /// Not complementary: the solve ended before that was reached.
+    /// Not complementary: the solve ended before complementarity was reached.
     NotComplementary,
 }
 
@@ -49,7 +49,7 @@ impl ConeActivity {
         }
     }
 
-    /// More than one branch meets here.
+    /// Whether more than one branch meets at the pair.
     pub fn is_biactive(self) -> bool {
         match self {
             Self::FirstZeroSecondOnBoundary | Self::SecondZeroFirstOnBoundary | Self::BothZero => true,
@@ -68,7 +68,7 @@ pub fn slack(v: &[f64]) -> f64 {
     v.first().copied().unwrap_or(0.0) - tangential_size(v)
 }
 
-/// `v_t/|v_t|` behind a leading zero; all zero where `v_t` vanishes.
+/// `v_t/|v_t|` after a leading zero; all zero where `v_t` vanishes.
 pub fn direction(v: &[f64]) -> DVector<f64> {
     let size = tangential_size(v);
     let usable = size >= f64::MIN_POSITIVE;
@@ -90,10 +90,10 @@ pub fn projection(v: &[f64]) -> DVector<f64> {
     projected
 }
 
-/// A derivative of the projection (an element of the B-subdifferential where there are several: the one of the region
-/// between `K` and `-K`, wherever `v` borders on it).
+/// The derivative of the projection, or, where there is none, an element of its B-subdifferential: that of the region
+/// between `K` and `-K`, wherever `v` lies on the boundary of this region.
 ///
-/// Between the two, with `w = v_t/|v_t|` and `ρ = v_0/|v_t|`: `½ [[1, wᵀ], [w, (1 + ρ) I - ρ w wᵀ]]`.
+/// Between `K` and `-K`, with `w = v_t/|v_t|` and `ρ = v_0/|v_t|`: `½ [[1, wᵀ], [w, (1 + ρ) I - ρ w wᵀ]]`.
 pub fn projection_derivative(v: &[f64]) -> DMatrix<f64> {
     let (first, size) = (v.first().copied().unwrap_or(0.0), tangential_size(v));
     let n = v.len();

@@ -2,18 +2,18 @@
 
 use nalgebra::DVector;
 
-/// Work done.
+/// Counts of the work of a solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SolverCounts {
-    /// Quadratic programs, however solved; the elastic version of one does not count again.
+    /// Quadratic programs, however solved; an elastic version does not count again.
     pub qp_solves: usize,
     /// Calls of the interior-point method.
     pub interior_point_solves: usize,
-    /// Elastic programs among them.
+    /// Calls of the interior-point method for elastic programs.
     pub elastic_solves: usize,
     /// Steps of sequential quadratic programming.
     pub sqp_iterations: usize,
-    /// Values of `ε` visited, restarts included.
+    /// Values of `ε` used, restarts included.
     pub relaxation_levels: usize,
     /// Branch programs solved.
     pub branches: usize,
@@ -21,10 +21,10 @@ pub struct SolverCounts {
     pub restarts: usize,
 }
 
-/// A point on the way.
+/// An iterate of a solve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SolverIterate {
-    /// The bound on the products; `None` in a branch, which has none.
+    /// The bound on the products; `None` in a branch, which has no products.
     pub relaxation: Option<f64>,
     pub x: DVector<f64>,
     pub objective: f64,

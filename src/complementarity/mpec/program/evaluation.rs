@@ -1,5 +1,5 @@
-//! A problem's functions and derivatives at one point, checked for numbers that are not finite, and the measure of how
-//! far the point is from feasible.
+//! A problem's functions and derivatives at one point, checked for numbers that are not finite, and measures of the
+//! point's infeasibility.
 
 use crate::resources::budget::{self, Taken};
 use nalgebra::{DMatrix, DVector};
@@ -25,7 +25,7 @@ pub enum Quantity {
     QuadraticModel,
 }
 
-/// Everything a [`Problem`] says at one point.
+/// All values and derivatives of a [`Problem`] at one point.
 #[derive(Debug, Clone)]
 pub struct ProgramEvaluation {
     pub objective: f64,
@@ -41,10 +41,10 @@ pub struct ProgramEvaluation {
     pub cones: ConeMembers,
 }
 
-/// Both members of every cone pair, one pair below the other.
+/// Both members of every cone pair, stacked pair by pair.
 #[derive(Debug, Clone)]
 pub struct ConeMembers {
-    /// Where each pair begins, and the end of the last.
+    /// Index of the first entry of each pair, and the end of the last pair.
     starts: Vec<usize>,
     pub first: DVector<f64>,
     pub second: DVector<f64>,
@@ -115,7 +115,7 @@ impl ProgramEvaluation {
         }
     }
 
-    /// The functions' values at `x`.
+    /// Updates the function values at `x`.
     ///
     /// # Errors
     /// The quantity that is not finite.
@@ -136,7 +136,7 @@ impl ProgramEvaluation {
         finite(self.cones.second.as_slice(), Quantity::Cones)
     }
 
-    /// Their derivatives at `x`.
+    /// Updates the derivatives at `x`.
     ///
     /// # Errors
     /// The quantity that is not finite.
@@ -168,7 +168,7 @@ impl ProgramEvaluation {
         finite(self.cones.second_jacobian.as_slice(), Quantity::ConeJacobians)
     }
 
-    /// Takes over another point's values; the derivatives stay as they are.
+    /// Exchanges the function values with those of another point; the derivatives remain.
     pub fn swap_values(&mut self, other: &mut Self) {
         std::mem::swap(&mut self.objective, &mut other.objective);
         std::mem::swap(&mut self.equality, &mut other.equality);
@@ -190,7 +190,7 @@ impl ProgramEvaluation {
             .max(self.cones.pairs().fold(0.0, |worst, (a, b)| worst.max(-cone::slack(a)).max(-cone::slack(b))))
     }
 
-    /// Largest `|a_i b_i|`, of the cone pairs `|A_i·B_i|`.
+    /// Largest `|a_i b_i|`, or `|A_i·B_i|` for cone pairs.
     pub fn largest_product(&self) -> f64 {
         let scalar = self.first.iter().zip(self.second.iter()).fold(0.0_f64, |worst, (a, b)| worst.max((a * b).abs()));
         self.cones.pairs().fold(scalar, |worst, (a, b)| worst.max(cone::product(a, b).abs()))

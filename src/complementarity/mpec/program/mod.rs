@@ -1,12 +1,13 @@
-//! A mathematical program with complementarity constraints as it is posed: functions, pairs, cones, and their values at a point.
+//! The statement of a mathematical program with complementarity constraints: functions, pairs, cones, and their values
+//! at a point.
 //!
 //! | file | what it does |
 //! |---|---|
-//! | `problem` | what a program has to tell about itself |
-//! | `evaluation` | functions and derivatives at a point, and how far it is from feasible |
+//! | `problem` | the interface of a program |
+//! | `evaluation` | functions and derivatives at a point, and the violation of its constraints |
 //! | `cone` | the second-order cone and complementarity on it |
 //! | `activity` | which member of each pair is zero |
-//! | `sparse_rows` | a matrix by the entries of its rows |
+//! | `sparse_rows` | a matrix stored by the entries of its rows |
 //! | `counts` | counts of work, and the iterates of a solve |
 
 pub(crate) mod activity;

@@ -1,4 +1,4 @@
-//! What a mathematical program with complementarity constraints has to tell about itself.
+//! The interface of a mathematical program with complementarity constraints.
 
 use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 use nalgebra::{DMatrix, DVector};
@@ -6,10 +6,10 @@ use nalgebra::{DMatrix, DVector};
 /// `min f(x)` s.t. `h(x) = 0`, `g(x) >= 0`, `lower <= x <= upper`, `0 <= a(x) ⊥ b(x) >= 0`, and cone pairs
 /// `K ∋ A_i(x) ⊥ B_i(x) ∈ K`, `K` the second-order cone (`program::cone`).
 ///
-/// All functions are evaluated at `x` of length [`Problem::variables`]; outputs are overwritten. Jacobians have one
-/// row a function and one column a variable and arrive empty: what is not written is zero. Everything is dimensionless and best scaled to numbers
-/// near one: tolerances are absolute. A value that is not finite ends the solve with a status that names its function,
-/// except at a trial point, where it only shortens the step.
+/// All functions are evaluated at `x` of length [`Problem::variables`]; outputs are overwritten. Jacobians have one row
+/// per function and one column per variable and are passed empty: entries that are not written are zero. All quantities
+/// are dimensionless and best scaled to magnitudes near one, since tolerances are absolute. A value that is not finite
+/// ends the solve with a status that names its function, except at a trial point, where it only shortens the step.
 pub trait Problem {
     /// Number of variables.
     fn variables(&self) -> usize;
@@ -19,12 +19,12 @@ pub trait Problem {
     fn inequalities(&self) -> usize;
     /// Number of complementary pairs.
     fn pairs(&self) -> usize;
-    /// Lower and upper bounds; infinite where there is none.
+    /// Lower and upper bounds; infinite where there is no bound.
     fn bounds(&self) -> (DVector<f64>, DVector<f64>);
 
-    /// `f`, the function that is minimised.
+    /// `f`, the objective function.
     fn objective(&self, x: &DVector<f64>) -> f64;
-    /// `∇f`; arrives zeroed.
+    /// `∇f`; passed as zeros.
     fn objective_gradient(&self, x: &DVector<f64>, gradient: &mut DVector<f64>);
 
     /// `h`.
@@ -45,14 +45,15 @@ pub trait Problem {
     fn cone_sizes(&self) -> Vec<usize> {
         Vec::new()
     }
-    /// Both members of every cone pair, one pair below the other.
+    /// Both members of every cone pair, stacked pair by pair.
     fn cone_values(&self, _x: &DVector<f64>, _first: &mut DVector<f64>, _second: &mut DVector<f64>) {}
-    /// Their gradients, stacked likewise.
+    /// Gradients of both members of every cone pair, stacked likewise.
     fn cone_jacobians(&self, _x: &DVector<f64>, _first: &mut DMatrix<f64>, _second: &mut DMatrix<f64>) {}
 
-    /// A positive semidefinite matrix for the quadratic programs' objective. Where `None` is returned, the solver
-    /// builds one from differences of the Lagrangian's gradient (damped BFGS). The answer has to be of one kind at every
-    /// `x`. A model that leaves out the constraints' curvature makes convergence linear instead of superlinear.
+    /// A positive semidefinite matrix for the quadratic programs' objective. With `None`, the solver approximates such
+    /// a matrix by differences of the Lagrangian's gradient (damped BFGS). A problem has to return `Some` for every
+    /// `x`, or `None` for every `x`. A model without the constraints' curvature makes convergence linear instead of
+    /// superlinear.
     fn quadratic_model(&self, _x: &DVector<f64>) -> Option<SparseRows> {
         None
     }

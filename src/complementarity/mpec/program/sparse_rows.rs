@@ -1,29 +1,29 @@
-//! A matrix by the entries of its rows.
+//! A matrix stored by the entries of its rows.
 
 use nalgebra::{DMatrix, DVector};
 use smallvec::{SmallVec, smallvec};
 use std::ops::{Index, IndexMut, Mul};
 
-/// A matrix whose rows have few entries, as gradients of a structure's functions have. What has no entry is zero; an
-/// entry that was written to stays one, zero or not, so that matrices that were written alike have the same pattern.
+/// A matrix with few entries per row, as in gradients of a structure's functions. Places without an entry are zero; an
+/// entry once written remains, zero or not, so that matrices written in the same way have the same pattern.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SparseRows {
     columns: usize,
     rows: Vec<SparseRow>,
 }
 
-/// Most rows have few entries: they need no memory of their own.
+/// A row; with few entries, as most rows have, it needs no heap allocation.
 type SparseRow = SmallVec<[(usize, f64); 6]>;
 
 static ZERO: f64 = 0.0;
 
 impl SparseRows {
-    /// No entries.
+    /// The zero matrix, without entries.
     pub fn zeros(rows: usize, columns: usize) -> Self {
         Self { columns, rows: vec![SparseRow::new(); rows] }
     }
 
-    /// One on the diagonal.
+    /// The identity matrix.
     pub fn identity(size: usize) -> Self {
         Self { columns: size, rows: (0..size).map(|i| smallvec![(i, 1.0)]).collect() }
     }
@@ -38,7 +38,7 @@ impl SparseRows {
         self.columns
     }
 
-    /// Takes every entry out.
+    /// Removes all entries.
     pub fn clear(&mut self) {
         self.rows.iter_mut().for_each(SparseRow::clear);
     }
@@ -53,7 +53,7 @@ impl SparseRows {
         self.rows.iter().enumerate().flat_map(|(i, row)| row.iter().map(move |&(j, value)| (i, j, value)))
     }
 
-    /// Puts entries in the place of a row's.
+    /// Replaces the entries of a row.
     pub fn set_row(&mut self, row: usize, entries: impl IntoIterator<Item = (usize, f64)>) {
         self.rows[row].clear();
         self.rows[row].extend(entries);
@@ -80,24 +80,24 @@ impl SparseRows {
         product
     }
 
-    /// Takes over a dense matrix of the same shape; its zeros are no entries.
+    /// Copies a dense matrix of the same shape; its zeros become no entries.
     pub fn copy_from(&mut self, matrix: &DMatrix<f64>) {
         *self = Self::from(matrix);
     }
 
-    /// The same matrix with its zeros.
+    /// The matrix in dense storage.
     pub fn to_dense(&self) -> DMatrix<f64> {
         let mut matrix = DMatrix::zeros(self.nrows(), self.columns);
         self.entries().for_each(|(row, column, value)| matrix[(row, column)] = value);
         matrix
     }
 
-    /// More columns, empty ones.
+    /// Adds empty columns, up to the given number.
     pub fn widen(&mut self, columns: usize) {
         self.columns = self.columns.max(columns);
     }
 
-    /// Largest absolute value; 0 where there is none.
+    /// Largest absolute value; 0 for a matrix without entries.
     pub fn amax(&self) -> f64 {
         self.entries().fold(0.0, |largest, (_, _, value)| largest.max(value.abs()))
     }
@@ -126,7 +126,7 @@ impl Index<(usize, usize)> for SparseRows {
 }
 
 impl IndexMut<(usize, usize)> for SparseRows {
-    /// Where there is no entry, there is one from now on.
+    /// Creates the entry where there is none.
     fn index_mut(&mut self, (row, column): (usize, usize)) -> &mut f64 {
         assert!(column < self.columns, "column {column} of {}", self.columns);
         let entries = &mut self.rows[row];

@@ -1,10 +1,10 @@
 //! Second-order cones in the linear system of a working set.
 //!
-//! A cone's vector `s = v + V d` is taken to lie inside the cone (no row), at its apex (`s = 0`, multiplier `ζ ∈ K`) or
-//! on its boundary. There, with `e = s_t/|s_t|` and `ζ = κ (1, -e)`, the conditions `s_0 = |s_t|` and
-//! `H d + q = ... + Vᵀζ` are linearised at the last `d`: a row `(1, -e)·s = 0`, and for the turning of `e` a block
-//! `κ/|s_t| V_tᵀ (I - e eᵀ) V_t` beside the Hessian. This is Newton's method; it converges in a few solves where
-//! rows that are linear take one.
+//! A cone's vector `s = v + V d` is assumed to lie inside the cone (no row), at its apex (`s = 0`, multiplier `ζ ∈ K`)
+//! or on its boundary. On the boundary, with `e = s_t/|s_t|` and `ζ = κ (1, -e)`, the conditions `s_0 = |s_t|` and
+//! `H d + q = ... + Vᵀζ` are linearised at the last `d`: a row `(1, -e)·s = 0`, and, for the rotation of `e`, a block
+//! `κ/|s_t| V_tᵀ (I - e eᵀ) V_t` added to the Hessian. This is Newton's method, which converges in a few solves where
+//! linear rows need only one.
 //!
 //! Source: the treatment of the friction cone by P. W. Christensen, A. Klarbring, J. S. Pang and N. Strömberg,
 //! Int. J. Numer. Meth. Engng 42 (1998), carried over to a quadratic program's rows.
@@ -14,10 +14,10 @@ use nalgebra::DVector;
 use crate::complementarity::mpec::program::cone;
 use crate::complementarity::mpec::quadratic_program::interior_point::{ConeRows, QuadraticProgram, QuadraticSolution};
 
-/// Solves granted beyond those for changes of the working set where a cone is on its boundary.
+/// Additional solves for programs with cones, beyond those for changes of the working set.
 pub const CORRECTIONS: usize = 6;
 
-/// Where a cone's vector is taken to lie.
+/// The assumed position of a cone's vector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ConeState {
     Inside,
@@ -26,7 +26,7 @@ pub enum ConeState {
 }
 
 impl ConeState {
-    /// Of a vector at rest, before any multiplier is known.
+    /// The state of a vector at zero step, before any multiplier is known.
     pub fn at_rest(values: &[f64], margin: f64) -> Self {
         if values.iter().all(|value| value.abs() <= margin) {
             Self::Apex
@@ -37,7 +37,7 @@ impl ConeState {
         }
     }
 
-    /// Of a vector and its multiplier of limited accuracy: where their difference lies.
+    /// The state from the position of the difference between a vector and its multiplier, both of limited accuracy.
     pub fn of_solution(values: &DVector<f64>, multiplier: &DVector<f64>) -> Self {
         let difference = values - multiplier;
         let size = cone::tangential_size(difference.as_slice());
@@ -51,10 +51,10 @@ impl ConeState {
     }
 }
 
-/// A cone on its boundary, linearised.
+/// The linearisation of a cone on its boundary.
 #[derive(Debug, Clone)]
 struct Expansion {
-    /// `e` behind a leading zero.
+    /// `e` after a leading zero.
     direction: DVector<f64>,
     /// `κ/|s_t|`; 0 where `κ` or `s_t` is not known yet.
     stiffness: f64,
@@ -88,13 +88,13 @@ pub struct Expansions {
 }
 
 impl Expansions {
-    /// At no step.
+    /// The linearisation at zero step.
     pub fn new(program: &QuadraticProgram) -> Self {
         let at = |cone: &ConeRows| Expansion::at(cone::direction(cone.values.as_slice()));
         Self { step: DVector::zeros(program.gradient.len()), cones: program.cones.iter().map(at).collect() }
     }
 
-    /// Adds the turning of the boundary's normals to the system's first rows.
+    /// Adds the terms from the rotation of the boundary's normals to the first rows of the system.
     pub fn add_curvature(
         &self,
         program: &QuadraticProgram,
@@ -121,7 +121,7 @@ impl Expansions {
         }
     }
 
-    /// Rows of the cones that are not inside, with their values at no step.
+    /// The rows of cones at their boundary or apex, with their values at zero step.
     pub fn rows(&self, program: &QuadraticProgram, states: &[ConeState]) -> Vec<(DVector<f64>, f64)> {
         let mut found = Vec::new();
         for ((cone, state), expansion) in program.cones.iter().zip(states).zip(&self.cones) {
@@ -156,10 +156,10 @@ impl Expansions {
         cones.map(multiplier).collect()
     }
 
-    /// Moves to the solution's step and revises the states; true where the system has to be solved again. Otherwise the
-    /// solution's cone multipliers are those at its own step.
+    /// Moves to the solution's step and revises the states; returns whether the system has to be solved again. If not,
+    /// the solution's cone multipliers are those at its own step.
     ///
-    /// `force` and `length` are what counts as no force and no length.
+    /// `force` and `length` are the tolerances below which forces and lengths count as zero.
     pub fn revise(
         &mut self,
         program: &QuadraticProgram,
@@ -217,7 +217,7 @@ mod tests {
     use crate::resources::cancel::CancelFlag;
     use nalgebra::DMatrix;
 
-    /// The point of a cone nearest to `target`, at some distance `weight` stretches.
+    /// The point of a cone nearest to `target`, in the norm with the given weights.
     fn nearest_in_cone(target: [f64; 3], weights: [f64; 3]) -> QuadraticProgram {
         let hessian = DMatrix::from_diagonal(&DVector::from_column_slice(&weights));
         let gradient = -&hessian * DVector::from_column_slice(&target);
@@ -252,7 +252,7 @@ mod tests {
         assert_eq!(solved, 5);
     }
 
-    /// With unequal weights there is no closed form: the conditions of Karush, Kuhn and Tucker are asked for instead.
+    /// With unequal weights there is no closed form: the Karush-Kuhn-Tucker conditions are checked instead.
     #[test]
     fn the_conditions_hold_with_unequal_weights_and_from_a_bad_guess() {
         let program = nearest_in_cone([0.3, 1.0, -0.4], [1.0, 3.0, 0.2]);

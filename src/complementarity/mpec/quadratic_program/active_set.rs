@@ -1,4 +1,4 @@
-//! A quadratic program solved through the linear system of a guessed working set.
+//! Solution of a quadratic program by the linear system of a guessed working set.
 //!
 //! With the rows `J` of the equalities and of the inequalities and bounds that are guessed to be active,
 //!
@@ -9,9 +9,10 @@
 //!
 //! Its solution is the program's when the other constraints hold at `d` and the multipliers of the inequalities are
 //! nonnegative (a Karush-Kuhn-Tucker point of a convex program is a solution). Otherwise violated rows enter the set
-//! and rows with a negative multiplier leave it, a bounded number of times: the primal-dual active set method of
-//! M. Hintermüller, K. Ito and K. Kunisch, SIAM J. Optim. 13 (2002), doi:10.1137/S1052623401383558. Second-order cones
-//! take part in it (`quadratic_program::active_cones`). It may fail, and then the interior-point method answers; what it does return is exact to round-off and costs microseconds.
+//! and rows with a negative multiplier leave it, a bounded number of times: the primal-dual active set method of M.
+//! Hintermüller, K. Ito and K. Kunisch, SIAM J. Optim. 13 (2002), doi:10.1137/S1052623401383558. Second-order cones are
+//! included (`quadratic_program::active_cones`). The method may fail, and the interior-point method then takes over; a
+//! solution that it does return is exact to round-off and takes microseconds.
 
 use nalgebra::DVector;
 
@@ -19,12 +20,12 @@ use crate::complementarity::mpec::quadratic_program::active_cones::{CORRECTIONS,
 use crate::complementarity::mpec::quadratic_program::interior_point::{QuadraticProgram, QuadraticSolution};
 use crate::complementarity::mpec::quadratic_program::linear_solve::{SquareMatrixFactors, product};
 
-/// Relative slack in "holds", "nonnegative" and "solves the system".
+/// Relative tolerance for constraints, for signs of multipliers and for residuals of the system.
 const ROUND_OFF: f64 = 1e-11;
-/// Block subtracted for the multipliers where rows depend on each other, relative to `1 + max |H|`.
+/// Diagonal subtracted in the block of the multipliers where rows are linearly dependent, relative to `1 + max |H|`.
 const MULTIPLIER_BLOCK: f64 = 1e-8;
 
-/// Which inequalities and bounds are taken for active.
+/// The inequalities and bounds assumed to be active, and the assumed states of the cones.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct WorkingSet {
     pub inequality: Vec<bool>,
@@ -34,7 +35,7 @@ pub struct WorkingSet {
 }
 
 impl WorkingSet {
-    /// What is within `margin` of active before any step is taken.
+    /// The constraints within `margin` of active at zero step.
     pub fn at_rest(program: &QuadraticProgram, margin: f64) -> Self {
         Self {
             inequality: program.inequality_values.iter().map(|value| *value <= margin).collect(),
@@ -44,7 +45,7 @@ impl WorkingSet {
         }
     }
 
-    /// What a solution of limited accuracy suggests: a multiplier larger than the slack.
+    /// The constraints that a solution of limited accuracy suggests: those with a multiplier larger than the slack.
     pub fn of_solution(program: &QuadraticProgram, solution: &QuadraticSolution) -> Self {
         let slack = &program.inequality_values + &program.inequality * &solution.step;
         let step = &solution.step;
@@ -62,7 +63,7 @@ impl WorkingSet {
         }
     }
 
-    /// Whether nothing is in it.
+    /// Whether the set is empty.
     pub fn is_empty(&self) -> bool {
         ![&self.inequality, &self.lower, &self.upper].into_iter().flatten().any(|active| *active)
             && self.cones.iter().all(|state| *state == ConeState::Inside)
@@ -75,8 +76,8 @@ impl WorkingSet {
     }
 }
 
-/// Solves `program` from the working set `guess`, changing the set at most `changes` times. `None` where that does not
-/// end at a solution; then `guess` is left as it was. On success `guess` is the solution's working set.
+/// Solves `program` from the working set `guess`, changing the set at most `changes` times. `None`, with `guess`
+/// unchanged, where this does not lead to a solution. On success `guess` is the solution's working set.
 pub fn solve(program: &QuadraticProgram, guess: &mut WorkingSet, changes: usize) -> Option<QuadraticSolution> {
     if !guess.fits(program) || !program.is_well_formed() {
         return None;
@@ -97,7 +98,7 @@ pub fn solve(program: &QuadraticProgram, guess: &mut WorkingSet, changes: usize)
     None
 }
 
-/// The linear system of the working set.
+/// Solves the linear system of the working set.
 fn solve_equalities(
     program: &QuadraticProgram,
     set: &WorkingSet,
@@ -142,8 +143,8 @@ fn solve_equalities(
         put_row(&entries, *value);
     }
     let unknowns = solve_refined(&entries, &[], &right, 1).or_else(|| {
-        // Rows that say the same twice make the system singular but not contradictory. A small negative block for the
-        // multipliers makes it regular, and refinement against the true matrix takes the block's effect out again.
+        // Redundant rows make the system singular but not contradictory. A small negative block for the multipliers
+        // makes the system regular, and refinement with the true matrix removes the effect of the block.
         let weight = MULTIPLIER_BLOCK * (1.0 + program.hessian.amax());
         let block: Vec<_> = (variables..variables + active).map(|place| (place, place, -weight)).collect();
         solve_refined(&entries, &block, &right, 4)
@@ -169,8 +170,8 @@ fn solve_equalities(
     Some(solution)
 }
 
-/// Solves with the factors of the matrix and of what is `added` to it, refined against the matrix; `None` where a residual
-/// remains. The residual is measured against the right-hand side alone, since a nearly singular system has huge unknowns.
+/// Solves with the factors of the matrix plus `added`, refined with the matrix itself; `None` where a residual remains.
+/// The residual is measured against the right-hand side alone, since a nearly singular system has huge unknowns.
 fn solve_refined(
     matrix: &[(usize, usize, f64)],
     added: &[(usize, usize, f64)],
@@ -192,7 +193,7 @@ fn solve_refined(
     is_solved.then_some(unknowns)
 }
 
-/// Takes violated rows in and rows with negative multipliers out; false where nothing had to change.
+/// Adds violated rows and removes rows with negative multipliers; returns whether the set changed.
 fn revise(
     program: &QuadraticProgram,
     solution: &QuadraticSolution,
@@ -219,7 +220,7 @@ fn revise(
     changed
 }
 
-/// Round-off below zero taken out of the multipliers.
+/// Sets multipliers below zero, which are round-off, to zero.
 fn clipped(mut solution: QuadraticSolution) -> QuadraticSolution {
     for multipliers in
         [&mut solution.inequality_multipliers, &mut solution.lower_multipliers, &mut solution.upper_multipliers]

@@ -1,8 +1,8 @@
-//! One step's quadratic program, by the cheapest way that works.
+//! The quadratic program of one step, by the cheapest method that succeeds.
 //!
-//! 1. where the equalities leave a line, the program condensed on it (`quadratic_program::one_dimensional`);
-//! 2. the linear system of the working set that the last program ended with (`quadratic_program::active_set`);
-//! 3. the interior-point method, its active set taken to round-off by the same linear system;
+//! 1. where the equalities leave a line, the program reduced to this line (`quadratic_program::one_dimensional`);
+//! 2. the linear system of the last program's final working set (`quadratic_program::active_set`);
+//! 3. the interior-point method, refined to round-off by the linear system of its active set;
 //! 4. the elastic program, where the constraints seem contradictory:
 //!
 //! ```text
@@ -10,8 +10,8 @@
 //!                                               lower <= d <= upper,   p, m, t >= 0
 //! ```
 //!
-//! which always has a solution; `ρ` is raised until the violation that remains no longer falls. Source: P. E. Gill,
-//! W. Murray and M. A. Saunders, *SNOPT*, SIAM Review 47 (2005), doi:10.1137/S0036144504446096, section on elastic mode.
+//! which always has a solution; `ρ` is raised until the remaining violation no longer falls. Source: P. E. Gill, W.
+//! Murray and M. A. Saunders, *SNOPT*, SIAM Review 47 (2005), doi:10.1137/S0036144504446096, section on elastic mode.
 
 use nalgebra::DVector;
 
@@ -24,37 +24,37 @@ use crate::complementarity::mpec::quadratic_program::interior_point::{
 use crate::complementarity::mpec::quadratic_program::one_dimensional::{Binding, LineSolver, OneDimensionalOutcome};
 use crate::resources::cancel::CancelFlag;
 
-/// Changes of the working set before the interior-point method is asked.
+/// Largest number of changes of the working set before the interior-point method is used.
 const WORKING_SET_CHANGES: usize = 8;
-/// Raises of the elastic weight, and the factor of each.
+/// Largest number of increases of the elastic weight, and the factor of each.
 const WEIGHT_RAISES: usize = 3;
 const WEIGHT_FACTOR: f64 = 100.0;
-/// What is active at the start, before any multiplier is known.
+/// Margin within which constraints are active at the start, before any multiplier is known.
 const REST_MARGIN: f64 = 1e-7;
 
-/// A step and what it leaves violated.
+/// A step and its remaining violation.
 #[derive(Debug, Clone)]
 pub struct QuadraticStep {
     pub solution: QuadraticSolution,
     /// Sum of the linearised violations that no step removes; zero unless elastic.
     pub remaining_violation: f64,
-    /// The working set was the one that the previous program ended with.
+    /// Whether the working set is the final working set of the previous program.
     pub same_working_set: bool,
 }
 
-/// Solves the programs of one sequence, keeping the working set from one to the next.
+/// A solver of the programs of one sequence, which passes the working set from each program to the next.
 pub struct StepSolver {
     ended_with: Option<FinalWorkingSet>,
     line: LineSolver,
     interior: InteriorSolver,
     /// Whether rows that contradict each other on a line are relaxed.
     pub is_elastic: bool,
-    /// Whether the interior-point method is asked for every program.
+    /// Whether the interior-point method is used for every program.
     pub interior_only: bool,
     pub counts: SolverCounts,
     /// The last bound on products of a sequence.
     pub relaxation: Option<f64>,
-    /// Where they are kept.
+    /// Stored iterates, where requested.
     pub iterates: Option<Vec<SolverIterate>>,
 }
 
@@ -73,7 +73,7 @@ impl Default for StepSolver {
     }
 }
 
-/// What bound the last program's solution.
+/// The active constraints at the last program's solution.
 #[derive(Debug, Clone, PartialEq)]
 enum FinalWorkingSet {
     OnLine(Option<Binding>),
@@ -86,7 +86,7 @@ impl StepSolver {
         self.ended_with = None;
     }
 
-    /// Whether anything but equalities bound the last solution.
+    /// Whether constraints other than equalities are active at the last solution.
     pub fn is_bound(&self) -> bool {
         match &self.ended_with {
             Some(FinalWorkingSet::OnLine(binding)) => binding.is_some(),
@@ -95,7 +95,7 @@ impl StepSolver {
         }
     }
 
-    /// Tells where the next programs are likely to go: the step from the origin to `x`.
+    /// Announces the likely direction of the next steps: from the origin to `x`.
     pub fn head_for(&mut self, program: &QuadraticProgram, x: &DVector<f64>) {
         self.line.head_for(&program.hessian, x);
     }
@@ -104,7 +104,7 @@ impl StepSolver {
     ///
     /// # Errors
     /// [`QuadraticFailure::NotFinite`], [`QuadraticFailure::Cancelled`], or the elastic program's own failure;
-    /// [`QuadraticFailure::SuspectedInfeasible`] on a line where that is not asked.
+    /// [`QuadraticFailure::SuspectedInfeasible`] for contradictory rows on a line, unless they are relaxed.
     pub fn solve(
         &mut self,
         program: &QuadraticProgram,
@@ -122,7 +122,7 @@ impl StepSolver {
         match on_line {
             OneDimensionalOutcome::Solved(solution, binding) => {
                 let ended = FinalWorkingSet::OnLine(binding);
-                // Before the first program nothing is taken to bind.
+                // Before the first program no constraint counts as active.
                 let same_working_set = *before.as_ref().unwrap_or(&FinalWorkingSet::OnLine(None)) == ended;
                 self.ended_with = Some(ended);
                 return Ok(QuadraticStep { solution, remaining_violation: 0.0, same_working_set });
@@ -220,7 +220,7 @@ fn relax_rows(program: &QuadraticProgram, weight: f64) -> QuadraticProgram {
     for i in 0..inequalities {
         inequality[(i, n + 2 * equalities + i)] = 1.0;
     }
-    // A vector that lacks `t` of lying in the cone lies there with `t` added to its first entry.
+    // A vector outside the cone by `t` lies in the cone with `t` added to its first entry.
     let cones = program.cones.iter().enumerate().map(|(i, cone)| {
         let mut rows = cone.rows.clone().resize_horizontally(total, 0.0);
         rows[(0, in_cones + i)] = 1.0;
@@ -254,7 +254,8 @@ mod tests {
     use crate::complementarity::mpec::quadratic_program::interior_point;
     use nalgebra::DMatrix;
 
-    /// `min ½ x²` s.t. `x >= 1` and `x <= -1`: every x in [-1, 1] violates by 2 in sum, and the smallest x wins.
+    /// `min ½ x²` s.t. `x >= 1` and `x <= -1`: every x in [-1, 1] has a total violation of 2, and x = 0 minimises the
+    /// objective.
     #[test]
     fn contradictory_rows_end_elastic_with_the_least_violation() {
         let program = QuadraticProgram {

@@ -1,4 +1,4 @@
-//! Convex quadratic programs, by the interior-point method of Clarabel. No other file knows that solver.
+//! Convex quadratic programs, by the interior-point method of Clarabel. No other file uses this library.
 //!
 //! ```text
 //! min ½ dᵀ H d + q·d    s.t.   e + E d = 0,   c + C d >= 0,   v_i + V_i d ∈ K,   lower <= d <= upper
@@ -11,8 +11,9 @@
 //! Source: P. J. Goulart and Y. Chen, *Clarabel: An interior-point solver for conic programs with quadratic objectives*,
 //! arXiv:2405.12762.
 //!
-//! Non-finite data make the interior-point method answer with a wrong status instead of an error, so the data are
-//! checked first; its verdict "infeasible" is passed on as a suspicion only, which the elastic program settles.
+//! With data that are not finite, the interior-point method returns a wrong status instead of an error, so the data are
+//! checked first. Its status "infeasible" is reported as a suspicion only, which the elastic program confirms or
+//! refutes.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
@@ -23,11 +24,11 @@ use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 use crate::resources::budget;
 use crate::resources::cancel::CancelFlag;
 
-/// Accuracy asked of the interior-point method; the active-set step that follows takes it to round-off.
+/// Accuracy required of the interior-point method; the subsequent active-set step refines the solution to round-off.
 const TOLERANCE: f64 = 1e-10;
-/// Iterations of the interior-point method; 8 to 15 are usual.
+/// Largest number of iterations of the interior-point method; 8 to 15 are usual.
 const ITERATIONS: u32 = 100;
-/// Multiplications of a factorisation that cannot be broken off: of the order of a second.
+/// Largest number of multiplications of a factorisation that cannot be interrupted: of the order of a second.
 const MOST_IN_ONE_PIECE: u64 = 2_000_000_000;
 
 /// Data of one convex quadratic program in `d` (n entries, dimensionless).
@@ -37,25 +38,25 @@ pub struct QuadraticProgram {
     pub hessian: SparseRows,
     /// `q`, n.
     pub gradient: DVector<f64>,
-    /// `E`, one row an equality.
+    /// `E`, one row per equality.
     pub equality: SparseRows,
     /// `e`.
     pub equality_values: DVector<f64>,
-    /// `C`, one row an inequality.
+    /// `C`, one row per inequality.
     pub inequality: SparseRows,
     /// `c`.
     pub inequality_values: DVector<f64>,
-    /// Bounds on `d`; infinite where there is none.
+    /// Bounds on `d`; infinite where there is no bound.
     pub lower: DVector<f64>,
     pub upper: DVector<f64>,
     /// Rows that have to lie in second-order cones.
     pub cones: Vec<ConeRows>,
 }
 
-/// `v + V d ∈ K`.
+/// The constraint `v + V d ∈ K`.
 #[derive(Debug, Clone)]
 pub struct ConeRows {
-    /// `V`, one row a component of the cone.
+    /// `V`, one row per component of the cone.
     pub rows: DMatrix<f64>,
     /// `v`.
     pub values: DVector<f64>,
@@ -79,20 +80,20 @@ pub struct QuadraticSolution {
     /// Nonnegative; zero where there is no bound.
     pub lower_multipliers: DVector<f64>,
     pub upper_multipliers: DVector<f64>,
-    /// One a cone, each in its cone.
+    /// One per cone, each in its cone.
     pub cone_multipliers: Vec<DVector<f64>>,
 }
 
-/// Why a quadratic program gave no solution.
+/// The reason why a quadratic program gave no solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum QuadraticFailure {
-    /// The data hold a NaN, or an infinity where none is allowed.
+    /// The data contain a NaN, or an infinity where none is allowed.
     NotFinite,
-    /// The interior-point method holds the constraints for contradictory.
+    /// The interior-point method finds the constraints contradictory.
     SuspectedInfeasible,
-    /// The interior-point method holds the objective for unbounded.
+    /// The interior-point method finds the objective unbounded.
     SuspectedUnbounded,
-    /// It ran out of iterations or precision.
+    /// The interior-point method ran out of iterations or precision.
     Inaccurate,
     /// Stopped by the cancel flag.
     Cancelled,
@@ -135,17 +136,17 @@ impl QuadraticProgram {
 /// Solves by the interior-point method.
 ///
 /// # Errors
-/// Every [`QuadraticFailure`]; none of them is a proof that the program has no solution.
+/// Any [`QuadraticFailure`]; none proves that the program has no solution.
 pub fn solve_interior(program: &QuadraticProgram, cancel: &CancelFlag) -> Result<QuadraticSolution, QuadraticFailure> {
     InteriorSolver::default().solve(program, cancel)
 }
 
-/// The interior-point method, which keeps its order of elimination and its memory as long as programs have the same
-/// pattern: their data are replaced in place.
+/// The interior-point method, which reuses its elimination order and its memory as long as programs have the same
+/// pattern: only their data are replaced.
 #[derive(Default)]
 pub struct InteriorSolver {
     held: Option<ReusableSolver>,
-    /// Programs whose data were put in place of another's.
+    /// Number of programs solved by replacing the data of a previous program.
     #[cfg(test)]
     pub updates: usize,
 }
@@ -156,7 +157,7 @@ struct ReusableSolver {
     shape: ProgramShape,
 }
 
-/// What has to agree for data to be replaced: the rows' kinds and the patterns of both matrices.
+/// The properties that have to agree for data to be replaced: the rows' kinds and the patterns of both matrices.
 #[derive(PartialEq)]
 struct ProgramShape {
     cones: Vec<SupportedConeT<f64>>,
@@ -168,7 +169,7 @@ impl InteriorSolver {
     /// Solves a program.
     ///
     /// # Errors
-    /// Every [`QuadraticFailure`]; none of them is a proof that the program has no solution.
+    /// Any [`QuadraticFailure`]; none proves that the program has no solution.
     pub fn solve(
         &mut self,
         program: &QuadraticProgram,
@@ -215,17 +216,18 @@ struct Data {
     rows: CscMatrix<f64>,
     right: Vec<f64>,
     cones: Vec<SupportedConeT<f64>>,
-    /// Variables with bounds.
+    /// Variables with lower bounds, and variables with upper bounds.
     below: Vec<usize>,
     above: Vec<usize>,
-    /// First row in a cone.
+    /// Index of the first cone row.
     cones_start: usize,
 }
 
-/// Entries of a program's matrices up to which its factors are small in any case.
+/// Number of entries of a program's matrices up to which its factors are small in any case.
 const FEW_ENTRIES: usize = 2_000;
 
-/// Refuses a program whose `[[H, Aᵀ], [A, -1]]` takes too much to be factorised: each iteration does so, in one piece.
+/// Refuses a program whose `[[H, Aᵀ], [A, -1]]` is too expensive to factorise: each iteration factorises it, in one
+/// piece.
 fn allow(data: &Data) {
     if data.hessian.nzval.len() + data.rows.nzval.len() <= FEW_ENTRIES {
         return;
@@ -278,7 +280,7 @@ impl Data {
         Self { hessian, rows, right, cones, below, above, cones_start }
     }
 
-    /// The solution, where there is one.
+    /// The solution, or the reason for its failure.
     fn read(
         &self,
         program: &QuadraticProgram,
@@ -336,9 +338,9 @@ impl Data {
     }
 }
 
-/// Presolve is off since it would drop rows with an infinite right-hand side, which never arise here, at a cost.
-/// Iterative refinement is off: it took a third of the time (7 variables) and the active-set step makes up for it.
-/// Equilibration stays, for the elastic programs, whose weights are large; without it, the same tests pass as well.
+/// Presolve is off: it would drop rows with an infinite right-hand side, which never occur here, at a cost. Iterative
+/// refinement is off: it took a third of the time (7 variables), and the active-set step replaces it. Equilibration is
+/// on for the elastic programs, whose weights are large; without it, the same tests pass as well.
 fn interior_settings() -> DefaultSettings<f64> {
     DefaultSettings {
         verbose: false,
@@ -354,7 +356,7 @@ fn interior_settings() -> DefaultSettings<f64> {
     }
 }
 
-/// A compressed-column matrix; entries have to come row by row, each place once.
+/// A compressed-column matrix; entries have to be given row by row, each place once.
 fn compressed(rows: usize, columns: usize, entries: impl Iterator<Item = (usize, usize, f64)>) -> CscMatrix<f64> {
     let mut by_column: Vec<Vec<(usize, f64)>> = vec![Vec::new(); columns];
     entries.for_each(|(row, column, value)| by_column[column].push((row, value)));

@@ -1,10 +1,10 @@
-//! Linear systems by their entries: dense where they are small, sparse from there on.
+//! Linear systems given by their entries: dense where small, sparse where large.
 
 use crate::algebra::sparse::factors::pivoted_lu::GeneralLu;
 use faer::sparse::Triplet;
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
-/// Unknowns up to which a dense factorisation is faster (measured on rows of one to fifty snapping bars).
+/// Number of unknowns up to which a dense factorisation is faster (measured on rows of one to fifty snapping bars).
 const MOST_DENSE: usize = 40;
 
 /// A factorised square matrix.
@@ -14,8 +14,8 @@ pub enum SquareMatrixFactors {
 }
 
 impl SquareMatrixFactors {
-    /// Factorises; entries at the same place add up. What depends on the pattern alone is taken over from `before` where
-    /// that has the same. `None` where it fails; a singular matrix may pass, and shows in the residual.
+    /// Factorises; entries at the same place add up. The symbolic factorisation is taken from `before` where the
+    /// patterns agree. `None` where the factorisation fails; a singular matrix may pass and shows in the residual.
     pub fn new(size: usize, entries: &[(usize, usize, f64)], before: Option<&Self>) -> Option<Self> {
         if size <= MOST_DENSE {
             let mut matrix = DMatrix::zeros(size, size);
@@ -30,7 +30,7 @@ impl SquareMatrixFactors {
         Some(Self::Sparse(Box::new(GeneralLu::new(size, entries, before)?)))
     }
 
-    /// The solution for a right-hand side; `None` where there is none or it is not finite.
+    /// The solution for a right-hand side; `None` where the solve fails or the solution is not finite.
     pub fn solve(&self, right: &DVector<f64>) -> Option<DVector<f64>> {
         let mut values = right.clone();
         if values.is_empty() {
@@ -43,7 +43,7 @@ impl SquareMatrixFactors {
         solved.then_some(values)
     }
 
-    /// The same for the transpose of the matrix.
+    /// The solution of the transposed system; `None` where the solve fails or the solution is not finite.
     pub fn solve_transposed(&self, right: &DVector<f64>) -> Option<DVector<f64>> {
         let mut values = right.clone();
         if values.is_empty() {
@@ -62,7 +62,7 @@ impl SquareMatrixFactors {
     }
 }
 
-/// The product of a matrix, by its entries, with a vector.
+/// The product of a matrix, given by its entries, with a vector.
 pub fn product(entries: &[(usize, usize, f64)], vector: &DVector<f64>) -> DVector<f64> {
     let mut product = DVector::zeros(vector.len());
     entries.iter().for_each(|&(row, column, value)| product[row] += value * vector[column]);

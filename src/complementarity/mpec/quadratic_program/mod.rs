@@ -2,12 +2,12 @@
 //!
 //! | file | what it does |
 //! |---|---|
-//! | `driver` | the program of one step, by the cheapest way that works; the elastic program where it is infeasible |
-//! | `interior_point` | Clarabel's interior-point method; no other file knows that solver |
+//! | `driver` | the program of one step, by the cheapest method that succeeds; the elastic program if infeasible |
+//! | `interior_point` | Clarabel's interior-point method; no other file uses this library |
 //! | `active_set` | the linear system of a working set |
-//! | `active_cones` | the part of it that the cones have |
-//! | `one_dimensional` | the program condensed on the line that its equalities leave |
-//! | `linear_solve` | linear systems of both |
+//! | `active_cones` | the contribution of the cones to this system |
+//! | `one_dimensional` | the program reduced to the line that its equalities leave |
+//! | `linear_solve` | the linear systems of `active_set` and `one_dimensional` |
 
 pub(crate) mod active_cones;
 pub(crate) mod active_set;

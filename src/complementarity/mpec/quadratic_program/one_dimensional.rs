@@ -1,15 +1,15 @@
-//! The quadratic program of a branch, condensed on the line that its equalities leave.
+//! The quadratic program of a branch, reduced to the line that its equalities leave.
 //!
-//! Where there is one equality fewer than variables, as in the branch of an increment (equilibrium, slips and one zero
-//! member a pair, for displacements, load and contacts), every `d` with `e + E d = 0` is `d₀ + z t`. Both follow from one
-//! factorisation of `E` without the column of the variable that is made the parameter `t`. What is left of the program,
+//! With one equality fewer than variables, as in the branch of an increment (equilibrium, slips and one zero member per
+//! pair, for displacements, load and contacts), every `d` with `e + E d = 0` is `d₀ + z t`. Both vectors follow from
+//! one factorisation of `E` without the column of the variable chosen as the parameter `t`. The reduced program,
 //!
 //! ```text
 //! min ½ (zᵀHz) t² + z·(q + H d₀) t    s.t.   (c + C d₀) + (C z) t >= 0,   lower <= d₀ + z t <= upper
 //! ```
 //!
-//! has the same solution and is solved by going through its rows. The multipliers `λ` of the equalities follow from the
-//! transpose.
+//! has the same solution and is solved by one pass over its rows. The multipliers `λ` of the equalities follow from the
+//! transposed system.
 
 use nalgebra::DVector;
 
@@ -18,14 +18,14 @@ use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 use crate::complementarity::mpec::quadratic_program::interior_point::{QuadraticProgram, QuadraticSolution};
 use crate::complementarity::mpec::quadratic_program::linear_solve::SquareMatrixFactors;
 
-/// Relative slack in "holds" and "solves the system".
+/// Relative tolerance for constraints and for residuals of the system.
 const ROUND_OFF: f64 = 1e-11;
 /// A row that changes less than this along the line does not depend on the parameter.
 const NO_SLOPE: f64 = 1e-12;
-/// How much faster than the parameter another variable may change before that one becomes the parameter.
+/// Factor by which another variable has to change faster than the parameter to become the parameter.
 const BETTER_PARAMETER: f64 = 10.0;
 
-/// The row that ends the way along the line before the minimum.
+/// The constraint that is active at the solution on the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Binding {
     Inequality(usize),
@@ -33,16 +33,16 @@ pub enum Binding {
     Upper(usize),
 }
 
-/// What became of a program.
+/// The outcome for a program.
 pub enum OneDimensionalOutcome {
     Solved(QuadraticSolution, Option<Binding>),
     /// No point of the line meets every row.
     Contradictory,
-    /// Not a program of this kind, or its line was not found.
+    /// The program is not of this kind, or its line was not found.
     Declined,
 }
 
-/// Solves such programs, keeping from one to the next what depends on the pattern alone.
+/// A solver of such programs, which reuses the data that depend on the pattern alone.
 #[derive(Default)]
 pub struct LineSolver {
     parameter: usize,
@@ -58,8 +58,8 @@ struct Constraint {
 }
 
 impl LineSolver {
-    /// Makes the variable that a step from the origin to `x` changes most the parameter; those that the objective bends
-    /// along are preferred.
+    /// Chooses as parameter the variable that changes most in a step from the origin to `x`, among the variables with
+    /// curvature of the objective.
     pub fn head_for(&mut self, hessian: &SparseRows, x: &DVector<f64>) {
         self.parameter = most_moved(hessian, x);
     }
@@ -112,7 +112,7 @@ impl LineSolver {
     }
 }
 
-/// The least point of the line that meets every row.
+/// The minimiser on the line that satisfies every row.
 fn minimise(
     program: &QuadraticProgram,
     factors: &SquareMatrixFactors,
@@ -224,7 +224,7 @@ fn constraints(
     rows.chain(lower).chain(upper).collect()
 }
 
-/// The variable that changes most, those along which the objective bends first.
+/// The variable that changes most, among the variables with curvature of the objective.
 fn most_moved(hessian: &SparseRows, change: &DVector<f64>) -> usize {
     let bends = |j: &usize| hessian[(*j, *j)];
     let most = (0..change.len()).map(|j| bends(&j)).fold(0.0, f64::max);
@@ -245,7 +245,7 @@ mod tests {
     use crate::resources::cancel::CancelFlag;
     use nalgebra::DMatrix;
 
-    /// `variables` of them, one equality fewer, inequalities that leave a stretch around `free`.
+    /// A program with one equality fewer than variables, and inequalities that hold at zero with the slack `free`.
     fn program(variables: usize, free: f64) -> QuadraticProgram {
         let wave = |i: usize, j: usize| (1.7 * i as f64 + 2.3 * j as f64 + 0.4).sin();
         let equality = DMatrix::from_fn(variables - 1, variables, |i, j| {
@@ -267,8 +267,8 @@ mod tests {
         }
     }
 
-    /// Dense and sparse, with and without a row that binds: the conditions of Karush, Kuhn and Tucker, and the point that
-    /// the interior-point method finds.
+    /// Dense and sparse systems, with and without an active row: the Karush-Kuhn-Tucker conditions, and agreement with
+    /// the interior-point method.
     #[test]
     fn the_line_has_the_solution_of_the_whole_program() {
         let mut bound = 0;

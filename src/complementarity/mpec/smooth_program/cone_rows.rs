@@ -1,4 +1,4 @@
-//! How a cone pair enters the smooth program.
+//! The treatment of cone pairs in the smooth program.
 //!
 //! ```text
 //! Product(ε):    a ∈ K,   b ∈ K,   ε - a·b >= 0                          the regularisation, ε falling to 0
@@ -8,23 +8,24 @@
 //! AlongSecond:   b_0 = |b_t|,   a_t + a_0 b_t/|b_t| = 0,   a_0 >= 0      the same, where a_t may vanish and b_t may not
 //! ```
 //!
-//! Membership is convex in the members and goes into the quadratic program as a second-order cone; only the product is
-//! relaxed. Each branch is a smooth manifold of the right dimension, also where the member that it does not lead along
-//! vanishes, so a branch program meets the usual constraint qualifications at a biactive pair.
+//! Membership of the cone is a convex constraint on the members and enters the quadratic program as a second-order
+//! cone; only the product is relaxed. Each branch is a smooth manifold of the correct dimension, even where the member
+//! that does not define its direction vanishes, so a branch program satisfies the usual constraint qualifications at a
+//! biactive pair.
 //!
 //! Sources: H. Kato and M. Fukushima, *An SQP-type algorithm for nonlinear second-order cone programs*, Optim. Lett. 1
-//! (2007), doi:10.1007/s11590-006-0009-2 (cones kept whole in the quadratic program); Y. Kanno and J. A. C. Martins,
-//! J. Optim. Theory Appl. 131 (2006), doi:10.1007/s10957-006-9137-4 (friction as such a pair).
+//! (2007), doi:10.1007/s11590-006-0009-2 (unrelaxed cones in the quadratic program); Y. Kanno and J. A. C. Martins, J.
+//! Optim. Theory Appl. 131 (2006), doi:10.1007/s10957-006-9137-4 (friction as such a pair).
 
 use nalgebra::DVector;
 
 use crate::complementarity::mpec::program::cone;
 use crate::complementarity::mpec::program::evaluation::ConeMembers;
 
-/// How one cone pair is treated.
+/// The treatment of one cone pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ConeTreatment {
-    /// Both in the cone, their product at most this.
+    /// Both members in the cone, their product at most this bound.
     Product(f64),
     FirstZero,
     SecondZero,
@@ -39,14 +40,14 @@ pub enum ConeMember {
     Second,
 }
 
-/// What a row says of its pair.
+/// The constraint that a row imposes on its pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ConeRow {
     /// A component of a member vanishes.
     Vanishes(ConeMember, usize),
-    /// The member that leads lies on the boundary.
+    /// The leading member lies on the boundary.
     Boundary(ConeMember),
-    /// A tangential component of the other member is opposed to it.
+    /// A tangential component of the other member is opposed to the leading member.
     Opposed(ConeMember, usize),
     /// The other member's first component is nonnegative.
     Sign(ConeMember),
@@ -55,7 +56,7 @@ pub enum ConeRow {
 }
 
 impl ConeTreatment {
-    /// The branch nearest to a pair of members: by where their difference lies, as the projection on the cone goes.
+    /// The branch nearest to a pair of members, by the case of the projection of their difference on the cone.
     pub fn nearest(a: &[f64], b: &[f64]) -> Self {
         let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
         let size = cone::tangential_size(&difference);
@@ -69,7 +70,7 @@ impl ConeTreatment {
         }
     }
 
-    /// The branch on the boundary, along the member whose direction is known better.
+    /// The branch on the boundary, along the member with the better defined direction.
     pub fn along(a: &[f64], b: &[f64]) -> Self {
         if cone::tangential_size(a) >= cone::tangential_size(b) { Self::AlongFirst } else { Self::AlongSecond }
     }
@@ -138,12 +139,12 @@ impl ConeTreatment {
         }
     }
 
-    /// Derivatives of a row by the first and by the second member.
+    /// Derivatives of a row with respect to the first and to the second member.
     pub fn derivatives(at: &ConeMembers, pair: usize, row: ConeRow) -> (DVector<f64>, DVector<f64>) {
         let (a, b) = (at.first_of(pair), at.second_of(pair));
         let size = a.len();
         let unit = |c: usize| DVector::from_fn(size, |k, _| f64::from(u8::from(k == c)));
-        // By the member that leads, then by the other.
+        // With respect to the leading member, then to the other member.
         let (lead, by_lead, by_other) = match row {
             ConeRow::Product => return (-DVector::from_column_slice(b), -DVector::from_column_slice(a)),
             ConeRow::Vanishes(which, c) => (which, unit(c), DVector::zeros(size)),

@@ -1,4 +1,4 @@
-//! A positive definite stand-in for the Hessian of the Lagrangian, from differences of its gradient.
+//! A positive definite approximation of the Hessian of the Lagrangian, from differences of its gradient.
 //!
 //! With `s` the step and `y` the change of the gradient (multipliers fixed), `y` is first blended with `H s` until
 //! `s·y >= 0.2 sᵀHs`; then `H ← H - H s sᵀH / sᵀHs + y yᵀ / s·y`.
@@ -28,7 +28,7 @@ impl Secant {
         Self { matrix: DMatrix::identity(variables, variables), _held: held, fresh: true, idle: false }
     }
 
-    /// The problem has a model of its own.
+    /// Takes the matrix out of use: the problem has its own model of the Hessian.
     pub fn set_idle(&mut self) {
         self.idle = true;
     }
@@ -37,7 +37,7 @@ impl Secant {
         self.idle
     }
 
-    /// Back to the identity; false where it was that already, or is not in use.
+    /// Resets the matrix to the identity; false where it already is the identity or is not in use.
     pub fn reset(&mut self) -> bool {
         if self.fresh || self.idle {
             return false;
@@ -80,7 +80,7 @@ impl Secant {
         let next =
             &self.matrix - &image * image.transpose() / curvature + &blended * blended.transpose() / blended_work;
         if next.iter().all(|value| value.is_finite()) {
-            // Symmetric to the last bit, so that the solver's upper triangle says everything.
+            // Exactly symmetric, since the solver reads the upper triangle only.
             self.matrix = (&next + next.transpose()) * 0.5;
             self.fresh = false;
         }

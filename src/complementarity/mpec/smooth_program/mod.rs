@@ -1,11 +1,12 @@
-//! The smooth program that stands for the one with complementarity constraints, and sequential quadratic programming on it.
+//! The smooth program in place of the program with complementarity constraints, and its solution by sequential
+//! quadratic programming.
 //!
 //! | file | what it does |
 //! |---|---|
-//! | `pair_treatment` | how each pair is treated |
+//! | `pair_treatment` | the treatment of each pair |
 //! | `relaxation` | the rows of the relaxed program and their linearisation |
 //! | `cone_rows` | the rows of cone pairs |
-//! | `damped_bfgs` | a positive definite stand-in for the Hessian |
+//! | `damped_bfgs` | a positive definite approximation of the Hessian |
 //! | `sqp` | sequential quadratic programming |
 
 pub(crate) mod cone_rows;

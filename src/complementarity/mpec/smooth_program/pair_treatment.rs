@@ -1,12 +1,13 @@
-//! How each pair is treated in a smooth program; the rows that follow from it are `smooth_program::relaxation`'s and `smooth_program::cone_rows`'.
+//! The treatment of each pair in a smooth program; `smooth_program::relaxation` and `smooth_program::cone_rows` form
+//! the resulting rows.
 
 use crate::complementarity::mpec::program::activity::PairActivity;
 use crate::complementarity::mpec::smooth_program::cone_rows::ConeTreatment;
 
-/// How one pair enters the smooth program.
+/// The treatment of one pair in the smooth program.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PairTreatment {
-    /// Both nonnegative, their product at most this.
+    /// Both members nonnegative, their product at most this bound.
     Product(f64),
     FirstZero,
     SecondZero,
@@ -24,7 +25,7 @@ impl PairTreatment {
     }
 }
 
-/// How every pair is treated.
+/// The treatment of every pair.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TreatmentPattern {
     pub pairs: Vec<PairTreatment>,
@@ -40,7 +41,7 @@ impl TreatmentPattern {
         }
     }
 
-    /// The bound on the products, where they have one.
+    /// The bound on the products; `None` where no product is bounded.
     pub fn relaxation(&self) -> Option<f64> {
         let of_pairs = self.pairs.iter().find_map(|treatment| match treatment {
             PairTreatment::Product(relaxation) => Some(*relaxation),
@@ -60,7 +61,7 @@ impl TreatmentPattern {
         })
     }
 
-    /// The same with the members zero that are named; what names none, or both, changes nothing.
+    /// The pattern with the given member of each pair zero; an entry with no single zero member changes nothing.
     pub fn with_zeros(mut self, members: &[PairActivity]) -> Self {
         for (treatment, member) in self.pairs.iter_mut().zip(members) {
             match member {

@@ -1,6 +1,6 @@
-//! The smooth program that stands for the one with complementarity constraints, and its linearisation.
+//! The smooth program in place of the program with complementarity constraints, and its linearisation.
 //!
-//! Each pair `0 <= a ⊥ b >= 0` is treated in one of these ways (`smooth_program::pattern`):
+//! Each pair `0 <= a ⊥ b >= 0` is treated in one of these ways (`smooth_program::pair_treatment`):
 //!
 //! ```text
 //! Product(ε):   a >= 0,  b >= 0,  ε - a b >= 0          the regularisation, ε falling to 0
@@ -27,7 +27,7 @@ use crate::complementarity::mpec::quadratic_program::interior_point::{ConeRows, 
 use crate::complementarity::mpec::smooth_program::cone_rows::{ConeMember, ConeRow, ConeTreatment};
 use crate::complementarity::mpec::smooth_program::pair_treatment::{PairTreatment, TreatmentPattern};
 
-/// What a row of the smooth program belongs to.
+/// The constraint to which a row of the smooth program belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SmoothProgramRow {
     Equality(usize),
@@ -39,24 +39,25 @@ pub enum SmoothProgramRow {
     Cone(usize, ConeRow),
 }
 
-/// Multipliers in the problem's own terms; signs as in `quadratic_program::interior_point`.
+/// Multipliers of the problem's own constraints; signs as in `quadratic_program::interior_point`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Multipliers {
-    /// One an equality, free in sign.
+    /// One per equality, free in sign.
     pub equality: DVector<f64>,
-    /// One an inequality, nonnegative.
+    /// One per inequality, nonnegative.
     pub inequality: DVector<f64>,
-    /// One a pair: `ν_a`, free in sign where `b > 0`.
+    /// One per pair: `ν_a`, free in sign where `b > 0`.
     pub first: DVector<f64>,
-    /// One a pair: `ν_b`.
+    /// One per pair: `ν_b`.
     pub second: DVector<f64>,
-    /// Of the cone pairs' first members, stacked as in [`crate::complementarity::mpec::Problem::cone_values`].
+    /// Multipliers of the cone pairs' first members, stacked as in
+    /// [`crate::complementarity::mpec::Problem::cone_values`].
     pub cone_first: DVector<f64>,
-    /// Of their second members.
+    /// Multipliers of the cone pairs' second members.
     pub cone_second: DVector<f64>,
-    /// One a variable, nonnegative.
+    /// One per variable, nonnegative.
     pub lower: DVector<f64>,
-    /// One a variable, nonnegative.
+    /// One per variable, nonnegative.
     pub upper: DVector<f64>,
 }
 
@@ -121,7 +122,7 @@ impl SmoothProgramRows {
         equalities + inequalities + cones
     }
 
-    /// The quadratic program at `x`; its Hessian is left to the caller.
+    /// The quadratic program at `x`; the caller supplies its Hessian.
     pub fn linearise(
         &self,
         at: &ProgramEvaluation,
@@ -175,8 +176,8 @@ impl SmoothProgramRows {
         }
     }
 
-    /// Where a pair's member is a single variable, its row and the variable's bound say the same, and a program that
-    /// says it twice has no unique multipliers. The bound goes.
+    /// Removes bounds implied by rows: where a pair's member is a single variable, its row and the variable's bound are
+    /// equivalent, and with both the multipliers would not be unique.
     fn drop_implied_bounds(&self, program: &mut QuadraticProgram) {
         for (place, row) in self.equality.iter().enumerate() {
             if let (SmoothProgramRow::First(_) | SmoothProgramRow::Second(_), Some((j, slope))) =
@@ -205,8 +206,8 @@ impl SmoothProgramRows {
         }
     }
 
-    /// The row values of `program` replaced by those of a second-order correction: the functions at the trial point
-    /// less their linear part.
+    /// Replaces the row values of `program` by those of a second-order correction: the functions at the trial point
+    /// minus their linear part.
     pub fn correct(&self, program: &mut QuadraticProgram, trial: &ProgramEvaluation, step: &DVector<f64>) {
         for (place, &row) in self.equality.iter().enumerate() {
             program.equality_values[place] = self.value(trial, row);
@@ -222,7 +223,7 @@ impl SmoothProgramRows {
         }
     }
 
-    /// The multipliers of a quadratic program's rows, sorted back to what they belong to.
+    /// The multipliers of a quadratic program's rows, assigned to the problem's constraints.
     pub fn multipliers(&self, at: &ProgramEvaluation, solution: &QuadraticSolution) -> Multipliers {
         let pairs = self.pattern.pairs.len();
         let mut multipliers = Multipliers {
@@ -275,7 +276,7 @@ fn member_of(cones: &ConeMembers, pair: usize, member: ConeMember) -> &[f64] {
     }
 }
 
-/// A member that has to lie in the cone, linearised.
+/// The linearised rows of a member that has to lie in the cone.
 fn cone_rows(cones: &ConeMembers, pair: usize, member: ConeMember) -> ConeRows {
     let range = cones.range(pair);
     let jacobian = match member {
@@ -288,7 +289,7 @@ fn cone_rows(cones: &ConeMembers, pair: usize, member: ConeMember) -> ConeRows {
     }
 }
 
-/// Column and value of a row's only entry.
+/// Column and value of a row's only entry; `None` for rows with none or several.
 fn only_entry(matrix: &SparseRows, row: usize) -> Option<(usize, f64)> {
     let mut entries = matrix.row(row).iter().filter(|(_, value)| *value != 0.0);
     match (entries.next(), entries.next()) {

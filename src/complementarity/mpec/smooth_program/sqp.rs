@@ -1,15 +1,17 @@
-//! One smooth program by sequential quadratic programming.
+//! Solution of one smooth program by sequential quadratic programming.
 //!
-//! At `x` the quadratic program of the linearised rows (`smooth_program::relaxation`) gives the step `d`; its Hessian `H` is the
-//! problem's own model or a damped secant matrix (`smooth_program::secant`). Steps are measured by the merit function
+//! At `x` the quadratic program of the linearised rows (`smooth_program::relaxation`) gives the step `d`; its Hessian
+//! `H` is the problem's own model or a damped secant matrix (`smooth_program::damped_bfgs`). Steps are assessed by the
+//! merit function
 //!
 //! ```text
 //! φ(x) = f(x) + ρ v(x),        v = Σ |equality rows| + Σ max(0, -inequality rows)
 //! ```
 //!
-//! whose predicted slope is `D = ∇f·d - ρ (v - v_left)`, `v_left` what the elastic program could not remove. `ρ` is the
-//! smallest that gives `D <= -½ dᵀHd - ρ (v - v_left)/10` and never falls. A full step that raises the merit is first
-//! corrected to second order (the rows re-evaluated at `x + d`), then shortened.
+//! with the predicted slope `D = ∇f·d - ρ (v - v_left)`, where `v_left` is the violation that the elastic program could
+//! not remove. `ρ` never falls and is raised as needed for `D <= -½ dᵀHd - ρ (v - v_left)/10`. A full step that
+//! increases the merit function first receives a second-order correction (the rows re-evaluated at `x + d`), then is
+//! shortened.
 //!
 //! Sources: R. Fletcher, S. Leyffer, D. Ralph and S. Scholtes, *Local convergence of SQP methods for mathematical
 //! programs with equilibrium constraints*, SIAM J. Optim. 17 (2006), doi:10.1137/S1052623402407382; J. Nocedal and
@@ -27,37 +29,37 @@ use crate::complementarity::mpec::smooth_program::damped_bfgs::Secant;
 use crate::complementarity::mpec::smooth_program::relaxation::{Multipliers, SmoothProgramRows};
 use crate::resources::cancel::CancelFlag;
 
-/// Part of the predicted decrease that a step has to reach.
+/// Fraction of the predicted decrease that a step has to reach.
 const SUFFICIENT_DECREASE: f64 = 1e-4;
-/// Halvings of a step before the search gives up.
+/// Largest number of halvings of a step.
 const HALVINGS: usize = 30;
-/// Objective and variables past which a sequence counts as unbounded.
+/// Objective and variables beyond which a sequence counts as unbounded.
 const UNBOUNDED_OBJECTIVE: f64 = -1e20;
 const UNBOUNDED_VARIABLE: f64 = 1e11;
 /// Ridge on a problem's own (semidefinite) model, relative to its largest entry: keeps steps in flat directions bounded.
 const RIDGE: f64 = 1e-8;
-/// Share of the violation that a step must promise to remove for the point not to be locally infeasible.
+/// Fraction of the violation that a step must be predicted to remove; otherwise the point counts as locally infeasible.
 const INFEASIBLE_SHARE: f64 = 1e-6;
 
-/// Settings of one sequence.
+/// Settings of one sequence of quadratic programs.
 #[derive(Debug, Clone, Copy)]
 pub struct SqpSettings {
     pub tolerance: f64,
     pub iteration_limit: usize,
-    /// End as soon as two successive programs have the same working set.
+    /// Whether to end as soon as two successive programs have the same working set.
     pub stop_when_settled: bool,
 }
 
-/// Why a sequence ended.
+/// The reason why a sequence ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SqpEnd {
     /// A Karush-Kuhn-Tucker point.
     Converged,
-    /// The working set came back unchanged (only where asked for).
+    /// The working set remained unchanged (only where requested).
     Settled,
-    /// No acceptable step; the point may be feasible all the same.
+    /// No acceptable step; the point may be feasible nevertheless.
     Stalled,
-    /// Stationary for the violation, which is not zero.
+    /// A stationary point of the violation, which is not zero.
     Infeasible,
     IterationLimit,
     Unbounded,
@@ -65,17 +67,17 @@ pub enum SqpEnd {
     Cancelled,
 }
 
-/// Where a sequence ended.
+/// The end point of a sequence.
 #[derive(Debug, Clone)]
 pub struct SqpOutcome {
     pub end: SqpEnd,
     pub x: DVector<f64>,
-    /// Values at `x`; derivatives at `x` or at the point before it.
+    /// Values at `x`; derivatives at `x` or at the previous point.
     pub at: ProgramEvaluation,
     pub multipliers: Multipliers,
 }
 
-/// A sequence under way.
+/// A sequence in progress.
 struct Sequence<'a, P: Problem + ?Sized> {
     problem: &'a P,
     rows: &'a SmoothProgramRows,
@@ -188,7 +190,7 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
         SqpEnd::IterationLimit
     }
 
-    /// Keeps `x` where iterates are asked for.
+    /// Stores `x` where iterates are requested.
     fn keep_iterate(&self, steps: &mut StepSolver) {
         if let Some(iterates) = &mut steps.iterates {
             let violation = self.rows.violation(&self.at);
@@ -197,7 +199,7 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
         }
     }
 
-    /// The change of the Lagrangian's gradient over the step that was taken, from one program to the next.
+    /// Updates the secant matrix by the change of the Lagrangian's gradient over the last step.
     fn update_secant(
         &self,
         secant: &mut Secant,
@@ -218,7 +220,7 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
         secant.update(&change, &(lagrangian(next) - lagrangian(program)));
     }
 
-    /// The quadratic program at `x`. A model from the problem makes the secant matrix idle.
+    /// The quadratic program at `x`. With the problem's own model, the secant matrix becomes idle.
     fn program(&mut self, secant: &mut Secant) -> Result<QuadraticProgram, Quantity> {
         self.at.update_derivatives(self.problem, &self.x)?;
         let n = self.x.len();
@@ -237,7 +239,7 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
         Ok(self.rows.linearise(&self.at, &self.x, self.bounds, hessian))
     }
 
-    /// Finds a step length with enough decrease and leaves the point in `trial`.
+    /// Finds a step length with sufficient decrease; `trial` then has the new point.
     fn search(
         &mut self,
         program: &QuadraticProgram,
@@ -290,7 +292,7 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
         None
     }
 
-    /// Evaluates the functions at `x + length direction`, kept inside the bounds; false where they are not finite.
+    /// Evaluates the functions at `x + length direction`, clamped to the bounds; false where a value is not finite.
     fn try_point(&mut self, direction: &DVector<f64>, length: f64) -> bool {
         self.trial_x.copy_from(&self.x);
         self.trial_x.axpy(length, direction, 1.0);
@@ -298,7 +300,7 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
         self.trial.update_values(self.problem, &self.trial_x).is_ok()
     }
 
-    /// The step at a converged point costs nothing more and takes a quadratically convergent sequence to round-off.
+    /// Takes the known step at a converged point, which brings a quadratically convergent sequence to round-off.
     fn take_last_step(&mut self, step: &DVector<f64>, allowed_violation: f64) {
         if self.try_point(step, 1.0) && self.rows.violation(&self.trial) <= allowed_violation {
             std::mem::swap(&mut self.x, &mut self.trial_x);
@@ -307,7 +309,8 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
     }
 }
 
-/// With the program's multipliers the Lagrangian's gradient at `x` is `-H d` and the rows' slacks are `-C d`.
+/// Whether `x` is stationary: with the program's multipliers, the Lagrangian's gradient at `x` is `-H d` and the slacks
+/// of the rows are `-C d`.
 fn is_stationary(program: &QuadraticProgram, step: &QuadraticStep, tolerance: f64, x: &DVector<f64>) -> bool {
     let direction = &step.solution.step;
     if x.is_empty() {
@@ -329,7 +332,7 @@ fn clamped(x: &DVector<f64>, bounds: &(DVector<f64>, DVector<f64>)) -> DVector<f
     DVector::from_iterator(x.len(), (0..x.len()).map(|j| x[j].max(bounds.0[j]).min(bounds.1[j])))
 }
 
-/// Zero for every row.
+/// Zero multipliers for every row.
 pub fn no_multipliers<P: Problem + ?Sized>(problem: &P) -> Multipliers {
     let n = problem.variables();
     let cone_entries = problem.cone_sizes().iter().sum();

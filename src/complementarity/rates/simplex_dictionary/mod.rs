@@ -1,14 +1,14 @@
-//! The cone that is left when some entities are decided, as a simplex dictionary.
+//! The cone that remains when some entities are decided, as a simplex dictionary.
 //!
-//! Every form `x_i` is written in terms of the ones that are chosen as coordinates and of `t`, the sum of all forms
-//! that were known not to be negative at first:
+//! Every form `x_i` is written in terms of the forms chosen as coordinates and of `t`, the sum of all forms initially
+//! known to be nonnegative:
 //!
 //! ```text
 //! x_i = Σ_j D_ij x_j + h_i t,      x_j >= 0 where known,      t = 1
 //! ```
 //!
-//! `t` is positive on the whole cone but for lines in it, so that a cone is empty but for lines where the linear program
-//! has no feasible point: a row with `h_i < 0` and no `D_ij > 0` proves it (Farkas). The dual simplex method with no
+//! `t` is positive on the whole cone except on its lines, so the cone contains only lines where the linear program has
+//! no feasible point: a row with `h_i < 0` and no `D_ij > 0` proves this (Farkas). The dual simplex method without an
 //! objective finds a point or such a row (V. Chvátal, *Linear Programming*, Freeman 1983, chapters 2 and 10). A zero
 //! form becomes a coordinate and is dropped, so that the dictionary shrinks from parent to child, and a child starts
 //! from its parent's point.
@@ -20,7 +20,7 @@ use crate::resources::budget::{self, Taken};
 
 /// Coefficients (of forms and weights of unit size) below this are zero.
 const NOTHING: f64 = 1e-11;
-/// A form this far below zero is infeasible; looser than the tolerance of the exact test of a ray.
+/// A form below zero by more than this is infeasible; looser than the tolerance of the exact test of a ray.
 const INFEASIBLE: f64 = 1e-8;
 /// Pivots below this are not used to prove anything.
 const SMALL_PIVOT: f64 = 1e-7;
@@ -28,7 +28,7 @@ const SMALL_PIVOT: f64 = 1e-7;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Variable {
     Form(usize),
-    /// A weight that no form known not to be negative has replaced: a line in the cone, as far as is known.
+    /// A weight that is not replaced by a form known to be nonnegative: a line in the cone, as far as is known.
     Weight,
 }
 
@@ -39,16 +39,16 @@ enum VariablePosition {
     Zero,
 }
 
-/// What is known of the cone.
+/// The feasibility of the cone, as far as established.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Feasibility {
-    /// The dictionary's own point is in it (or it could not be told).
+    /// The dictionary's own point is in the cone (or the test was inconclusive).
     Feasible,
-    /// It holds nothing but lines.
+    /// The cone contains only lines.
     OnlyLines,
 }
 
-/// One dictionary. Column 0 is `t`.
+/// A simplex dictionary. Column 0 is `t`.
 #[derive(Debug, Clone)]
 pub struct Dictionary {
     width: usize,
@@ -57,16 +57,16 @@ pub struct Dictionary {
     /// `rows x width`, row by row; the leading `columns + 1` entries of a row are in use.
     table: Vec<f64>,
     place: Vec<VariablePosition>,
-    /// Forms are stored with this sign.
+    /// Sign with which each form is stored.
     sign: Vec<f64>,
     nonnegative: Vec<bool>,
-    /// Everything but lines has been found empty: `t = 0`, and no form known not to be negative differs from zero.
+    /// The cone has been found to contain only lines: `t = 0`, and every form known to be nonnegative is zero.
     lines_only: bool,
     _held: Taken,
 }
 
 impl Dictionary {
-    /// The cone of what all options of each entity have in common. The load rate is the last form.
+    /// The cone of the inequalities common to all options of each entity. The load rate is the last form.
     pub fn new(problem: &RateProblem, common: &[Vec<Signed>]) -> Option<Self> {
         let weights = problem.weights();
         let count = problem.forms.nrows() + 1;
@@ -127,7 +127,7 @@ impl Dictionary {
         let pivot = (1..self.width).max_by(|a, b| row[*a].abs().total_cmp(&row[*b].abs()));
         match pivot.filter(|pivot| row[*pivot].abs() > NOTHING) {
             None => {
-                // Nothing is known not to be negative: the cone is all lines.
+                // No form is known to be nonnegative: the cone consists of lines.
                 self.table.truncate(last);
                 self.lines_only = true;
             }
@@ -150,7 +150,7 @@ impl Dictionary {
             return;
         }
         if self.nonnegative[form] {
-            // Not negative with either sign: zero. Left to the options that say so.
+            // Nonnegative with either sign, hence zero: left to the options that contain this equation.
             return;
         }
         if self.sign[form] != signed.sign {
@@ -244,7 +244,8 @@ impl Dictionary {
         self.table[row * self.width + column]
     }
 
-    /// Replaces a free weight by a form that is known not to be negative, by the largest pivot; the column if it did.
+    /// Replaces a free weight by a form known to be nonnegative, with the largest pivot; returns the column replaced,
+    /// if any.
     fn replace_weight(&mut self) -> Option<usize> {
         budget::spend(self.rows.len() * self.columns.len());
         let mut best = (NOTHING, 0, 0);
@@ -265,7 +266,7 @@ impl Dictionary {
         Some(best.2)
     }
 
-    /// Where a line has become a ray, `t` is made positive on it.
+    /// Makes `t` positive on lines that have become rays.
     fn count_rays_in(&mut self) {
         while let Some(column) = self.replace_weight() {
             let Variable::Form(form) = self.columns[column] else { return };
@@ -291,7 +292,7 @@ impl Dictionary {
         }
     }
 
-    /// Columns but for `t`: the dimension of what is left, less one where it is not all lines.
+    /// Number of columns without `t`: the dimension of the remaining cone, minus one unless the cone consists of lines.
     pub fn dimension(&self) -> usize {
         self.columns.len() - 1
     }
@@ -311,18 +312,18 @@ impl Dictionary {
         self.count_rays_in();
     }
 
-    /// Makes the load rate zero; `false` where that leaves nothing but zero.
+    /// Makes the load rate zero; `false` where only zero remains.
     pub fn rest_load(&mut self) -> bool {
         self.make_zero(self.place.len() - 1)
     }
 
-    /// Makes a form zero; `false` where that leaves nothing but zero.
+    /// Makes a form zero; `false` where only zero remains.
     pub fn make_zero(&mut self, form: usize) -> bool {
         let column = match self.place[form] {
             VariablePosition::Zero => return true,
             VariablePosition::Column(column) => column,
             VariablePosition::Row(row) => {
-                // A free weight goes first: the forms that are not negative stay coordinates.
+                // A free weight is replaced first, so that nonnegative forms remain coordinates.
                 let best = (1..self.columns.len())
                     .map(|column| {
                         let size = self.entry(row, column).abs();
@@ -336,7 +337,8 @@ impl Dictionary {
                         column
                     }
                     None if !self.lines_only && self.entry(row, 0).abs() > INFEASIBLE => return self.leave_lines(),
-                    // Zero already, or too close to tell: left out, which makes the cone larger, never smaller.
+                    // Already zero, or too close to zero to decide: the condition is omitted, which enlarges the cone,
+                    // never reduces it.
                     _ => {
                         self.drop_row(row);
                         self.place[form] = VariablePosition::Zero;
@@ -350,7 +352,7 @@ impl Dictionary {
         !(self.lines_only && self.columns.len() == 1)
     }
 
-    /// Only lines are left: `t` and every coordinate that is not negative are zero. `false` where there are none.
+    /// Reduces the cone to its lines: `t` and every nonnegative coordinate are zero. `false` where there are no lines.
     pub fn leave_lines(&mut self) -> bool {
         self.lines_only = true;
         self.forget_pointed();
@@ -381,7 +383,7 @@ impl Dictionary {
         }
     }
 
-    /// Whether the form is zero on everything that is left.
+    /// Whether the form is zero on the whole remaining cone.
     pub fn vanishes(&self, form: usize) -> bool {
         match self.place[form] {
             VariablePosition::Zero => true,
@@ -393,7 +395,7 @@ impl Dictionary {
         }
     }
 
-    /// The form's coefficients over `t` and the coordinates, with the sign asked for.
+    /// The form's coefficients over `t` and the coordinates, with the given sign.
     pub fn coefficients(&self, form: Option<usize>, sign: f64) -> Vec<f64> {
         let form = form.unwrap_or(self.place.len() - 1);
         let mut coefficients = vec![0.0; self.columns.len()];

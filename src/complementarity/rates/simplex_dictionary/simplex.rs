@@ -1,14 +1,14 @@
-//! The dual simplex method on a dictionary, and coordinates that it forces to zero.
+//! The dual simplex method on a dictionary, and the removal of coordinates that a row forces to zero.
 
 use crate::complementarity::rates::simplex_dictionary::{
     Dictionary, Feasibility, INFEASIBLE, NOTHING, SMALL_PIVOT, Variable, VariablePosition,
 };
 use crate::resources::budget;
 
-/// Coefficients by which a coordinate is forced to zero.
+/// Magnitude of negative coefficients from which a coordinate is forced to zero.
 const FORCING: f64 = 1e-3;
 
-/// Whether a point is left; the dictionary moves to it.
+/// Whether the cone contains more than lines; the dictionary moves to a point of the cone.
 pub fn feasibility(dictionary: &mut Dictionary) -> Feasibility {
     if dictionary.lines_only {
         return Feasibility::OnlyLines;
@@ -54,11 +54,12 @@ pub fn feasibility(dictionary: &mut Dictionary) -> Feasibility {
         }
         match entering {
             Some((_, column)) => dictionary.pivot(row, column),
-            // Coordinates are at most of the size of `t`: what small coefficients may add must not matter.
+            // Coordinates are at most of the magnitude of `t`: the contribution of small coefficients has to be
+            // negligible.
             None if largest_small * dictionary.columns.len() as f64 <= -0.1 * value => return Feasibility::OnlyLines,
             None => return Feasibility::Feasible,
         }
-        // What is not finite anywhere shows in the values of the point, at the latest when it enters them.
+        // An entry that is not finite shows in the values of the point, at the latest when it enters them.
         if !(0..dictionary.rows.len()).all(|row| dictionary.entry(row, 0).is_finite()) {
             return Feasibility::Feasible;
         }
@@ -66,7 +67,7 @@ pub fn feasibility(dictionary: &mut Dictionary) -> Feasibility {
     Feasibility::Feasible
 }
 
-/// Drops coordinates that some row forces to zero: a form that is not negative, with no positive coefficient.
+/// Drops coordinates that some row forces to zero: a nonnegative form without positive coefficients.
 pub fn drop_forced(dictionary: &mut Dictionary) {
     let mut row = 0;
     while row < dictionary.rows.len() {
