@@ -116,6 +116,7 @@ fn times(matrix: &Matrix, values: &Vector) -> Vector {
 #[cfg(test)]
 mod tests {
     use super::{Frame, Penalties, PenaltyResponse, dot, respond};
+    use crate::mechanics::contact::coulomb::CoulombFriction;
     use crate::mechanics::contact::obstacle::RigidSurface;
     use crate::mechanics::contact::{ContactPair, Sliding};
     use crate::result::increment::Status;

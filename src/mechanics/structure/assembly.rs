@@ -1,6 +1,7 @@
 //! From the degrees of freedom of the structure to those of an element, and back.
 
 use crate::mechanics::structure::elements::{FiniteElement, Stretching};
+use smallvec::SmallVec;
 
 /// An element and the degrees of freedom that it joins, in the order of the element.
 #[derive(Clone, Copy)]
@@ -12,8 +13,9 @@ pub struct ElementAt<'a> {
 /// Work memory for one element, reused for the next.
 #[derive(Default)]
 pub struct ElementBuffer {
-    displacement: Vec<f64>,
-    values: Vec<f64>,
+    // On the stack for two nodes in space.
+    displacement: SmallVec<[f64; 6]>,
+    values: SmallVec<[f64; 36]>,
 }
 
 impl ElementBuffer {
