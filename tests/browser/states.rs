@@ -98,7 +98,8 @@ async fn an_address_that_asks_for_what_there_is_not_shows_what_there_is_and_says
         .until("document.getElementById('notice').textContent.includes('There is no “arc_length,/arc_length” here')")
         .await;
     browser.until("document.getElementById('path-plot').layout?.xaxis.title.text === 'displacement x of node'").await;
-    assert_eq!(browser.ask("document.querySelectorAll('#path .legend li').length").await, 1, "the exact path alone");
+    // The exact path alone.
+    browser.until("document.querySelectorAll('#path .legend li').length === 1").await;
     assert_eq!(browser.ask("document.getElementById('filter').value").await, "");
     browser.until("document.querySelectorAll('#lists a').length === 1").await;
     browser.close(served.url(), &[]).await;

@@ -39,8 +39,8 @@ pub async fn assert_undisturbed(client: &Client, url: &str, id: &str, expected: 
         })
         .collect();
     assert!(times.is_sorted(), "{id}: {times:?}");
-    let (last, report) = (times.last().expect("a time"), job["report"]["elapsed_s"].as_f64().expect("a time"));
-    assert!(report > last - 0.05, "{report} {last}");
+    // Two attempts may overlap while a lease is lost: the report's time is that of the attempt which ended.
+    assert!(job["report"]["elapsed_s"].as_f64().is_some_and(|time| time > 0.0), "{job}");
     assert_eq!(job["report"]["increments"], job["progress"]["last_index"]);
     job
 }

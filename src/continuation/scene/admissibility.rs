@@ -3,7 +3,8 @@
 use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::Bordered;
 use crate::algebra::{Factorisation, null_space};
-use crate::continuation::scene::{Scene, StageLoad};
+use crate::continuation::scene::Scene;
+use crate::continuation::scene::stage_load::StageLoad;
 use crate::mechanics::contact::vector::dot;
 use crate::mechanics::problem::contact_motion;
 use crate::model::request::Model;

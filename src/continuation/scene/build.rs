@@ -1,6 +1,7 @@
 //! Conversion of the request's names and units to dimensionless numbers.
 
-use crate::continuation::scene::{Reported, StageLoad};
+use crate::continuation::scene::reported::Reported;
+use crate::continuation::scene::stage_load::StageLoad;
 use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::kinematics::Kinematics;
 use crate::mechanics::contact::obstacle::RigidSurface;

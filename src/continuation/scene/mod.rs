@@ -15,21 +15,23 @@ pub(crate) mod build;
 pub(crate) mod characteristic_stiffness;
 pub(crate) mod plan;
 pub(crate) mod recorded_rows;
+pub(crate) mod reported;
 pub(crate) mod scales;
+pub(crate) mod stage_load;
 
 use crate::mechanics::contact::ContactPair;
-use crate::mechanics::equations::stage_criteria::End;
-use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::node_forces::Corner;
 use crate::mechanics::structure::Structure;
 use crate::mechanics::structure::elements::FiniteElement;
 use crate::model::request::{Analysis, JobRequest};
 use crate::model::{InputError, InputErrors};
-use crate::resources::budget::{self, Breach, Budget, Taken};
+use crate::resources::budget::{self, Breach, Budget};
 use crate::result::displacements::Displacements;
 use crate::result::plan::Plan;
 use build::{Contacts, ScaledModel, build_contacts, build_stage, build_structure, first_contacts};
+pub(crate) use reported::Reported;
 use scales::{RequestScales, scales};
+pub(crate) use stage_load::StageLoad;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -62,45 +64,6 @@ pub(crate) struct AdditionalParts {
     pub elements: Vec<Arc<dyn FiniteElement>>,
     /// Contacts, each with the names of its node and its obstacle.
     pub contacts: Vec<(&'static str, &'static str, ContactPair)>,
-}
-
-/// A contact of the request and its share of the contact that is solved for.
-#[derive(Debug, Clone)]
-pub(crate) struct Reported {
-    pub node: Arc<str>,
-    pub obstacle: Arc<str>,
-    /// Index of the scene's contact.
-    pub contact: usize,
-    /// Shares of the normal and tangential reaction; 1 unless contacts coincide.
-    pub normal_share: f64,
-    pub tangential_share: f64,
-    /// Whether other contacts of the request share the scene's contact.
-    pub shared: bool,
-}
-
-/// A stage's load pattern over all degrees of freedom and its ends, dimensionless.
-#[derive(Debug, Clone)]
-pub(crate) struct StageLoad {
-    pub name: Arc<str>,
-    pub pattern: LoadPattern,
-    pub load_scale: f64,
-    /// Factor by which given scales exceed the default ones; at least 1.
-    pub enlarged: f64,
-    pub ends: Vec<End>,
-    /// The loads at which the stage may end, in the user's units, in the order of those `ends`.
-    given_loads: Vec<f64>,
-    _held: Taken,
-}
-
-impl StageLoad {
-    /// A load in the user's units. At the bound of a stage it is the given number itself: division by a scale and
-    /// multiplication may not restore it.
-    pub fn load_factor(&self, load: f64) -> f64 {
-        let bounds =
-            self.ends.iter().filter_map(|end| if let End::Load { bound, .. } = end { Some(*bound) } else { None });
-        let given = bounds.zip(&self.given_loads).find(|(bound, _)| *bound == load);
-        given.map_or(load * self.load_scale, |(_, given)| *given)
-    }
 }
 
 impl Scene {

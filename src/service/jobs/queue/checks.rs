@@ -244,6 +244,8 @@ mod tests {
         let (told, stopped) = mpsc::channel();
         let ended = checks.run(posted("one"), |_| Endless(told)).await;
         assert!(matches!(ended, Err(JobsError::CheckTime(most)) if most == Duration::from_millis(300)));
-        stopped.recv_timeout(Duration::from_secs(600)).expect("it is stopped");
+        // On a busy machine the time may be over before the check has begun: then it is dropped, not stopped.
+        let is_stopped = stopped.recv_timeout(Duration::from_secs(600));
+        assert_ne!(is_stopped, Err(mpsc::RecvTimeoutError::Timeout), "the check goes on");
     }
 }
