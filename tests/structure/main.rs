@@ -82,7 +82,7 @@ pub const LIMITS: [Limit; 8] = [
         what: "types of the solver with inherent impl blocks in several files",
         measure: |measures| measures.spread_types.len(),
         aim: 0,
-        at_most: 3,
+        at_most: 2,
         why: "Methods in other files are dependencies that no import shows: each file can reach every field.",
     },
     Limit {
