@@ -1,7 +1,6 @@
 //! From the degrees of freedom of the structure to those of an element, and back.
 
 use crate::mechanics::structure::elements::{FiniteElement, Stretching};
-use smallvec::SmallVec;
 
 /// An element and the degrees of freedom that it joins, in the order of the element.
 #[derive(Clone, Copy)]
@@ -10,21 +9,29 @@ pub struct ElementAt<'a> {
     pub freedoms: &'a [usize],
 }
 
-/// Work memory for one element, reused for the next.
+/// The degrees of freedom of two nodes in space.
+const FEW: usize = 6;
+
+/// Work memory for one element, reused for the next. Elements of few degrees of freedom need none beside the stack.
 #[derive(Default)]
 pub struct ElementBuffer {
-    // On the stack for two nodes in space.
-    displacement: SmallVec<[f64; 6]>,
-    values: SmallVec<[f64; 36]>,
+    few: ([f64; FEW], [[f64; FEW]; FEW]),
+    many: (Vec<f64>, Vec<f64>),
 }
 
 impl ElementBuffer {
-    /// The element's displacement, and room for `count` numbers.
+    /// The displacement of an element, and room for so many numbers, at most the entries of its tangent.
+    #[inline(always)]
     fn of(&mut self, at: ElementAt<'_>, displacement: &[f64], count: usize) -> (&[f64], &mut [f64]) {
-        self.displacement.clear();
-        self.displacement.extend(at.freedoms.iter().map(|freedom| displacement[*freedom]));
-        self.values.resize(count, 0.0);
-        (&self.displacement, &mut self.values)
+        let gathered = at.freedoms.iter().map(|freedom| displacement[*freedom]);
+        if at.freedoms.len() <= FEW {
+            self.few.0.iter_mut().zip(gathered).for_each(|(own, value)| *own = value);
+            return (&self.few.0[..at.freedoms.len()], &mut self.few.1.as_flattened_mut()[..count]);
+        }
+        self.many.0.clear();
+        self.many.0.extend(gathered);
+        self.many.1.resize(count, 0.0);
+        (&self.many.0, &mut self.many.1)
     }
 }
 
@@ -80,7 +87,16 @@ impl ElementAt<'_> {
     /// entries of a node with itself come first. Sums over the columns of a row thus add the entries of one component
     /// together.
     fn each_entry(self, matrix: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
-        let (count, nodes) = (self.freedoms.len(), self.element.nodes().len());
+        match (self.element.nodes().len(), self.freedoms.len()) {
+            (2, 4) => each_entry_of_pair::<2>(self.freedoms, matrix, add),
+            (2, 6) => each_entry_of_pair::<3>(self.freedoms, matrix, add),
+            (nodes, _) => self.each_entry_of(nodes, matrix, add),
+        }
+    }
+
+    /// The same for any number of nodes.
+    fn each_entry_of(self, nodes: usize, matrix: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
+        let count = self.freedoms.len();
         let of_node = count / nodes;
         for row in 0..of_node {
             for column in 0..of_node {
@@ -119,5 +135,26 @@ impl ElementAt<'_> {
     /// The stretch `L/L0` of an element that may shrink to a point.
     pub fn stretch(self, displacement: &[f64], buffer: &mut ElementBuffer) -> Option<f64> {
         self.element.stretch(buffer.of(self, displacement, 0).0)
+    }
+}
+
+/// The entries between two nodes of so many degrees of freedom, in the same order.
+#[inline(always)]
+fn each_entry_of_pair<const OF_NODE: usize>(
+    freedoms: &[usize],
+    matrix: &[f64],
+    add: &mut impl FnMut(usize, usize, f64),
+) {
+    let (first, second) = freedoms.split_at(OF_NODE);
+    let (upper, lower) = matrix.split_at(2 * OF_NODE * OF_NODE);
+    for row in 0..OF_NODE {
+        let upper = &upper[2 * OF_NODE * row..][..2 * OF_NODE];
+        let lower = &lower[2 * OF_NODE * row..][..2 * OF_NODE];
+        for column in 0..OF_NODE {
+            add(first[row], first[column], upper[column]);
+            add(second[row], second[column], lower[OF_NODE + column]);
+            add(first[row], second[column], upper[OF_NODE + column]);
+            add(second[row], first[column], lower[column]);
+        }
     }
 }

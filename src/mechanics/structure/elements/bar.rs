@@ -93,6 +93,7 @@ impl Bar {
     }
 
     /// Writes `slope d dᵀ + geometric (I - d dᵀ)` between the nodes; the tangent where these are `N'` and `N/L`.
+    #[inline(always)]
     fn write_parts(deformed: &Deformed, slope: f64, geometric: f64, stiffness: &mut [f64]) {
         match stiffness.len() {
             16 => Self::write_parts_in::<2>(deformed, slope, geometric, stiffness),
@@ -101,16 +102,18 @@ impl Bar {
     }
 
     /// As `write_parts`, in a number of dimensions known to the compiler.
+    #[inline(always)]
     fn write_parts_in<const DIMENSION: usize>(deformed: &Deformed, slope: f64, geometric: f64, stiffness: &mut [f64]) {
-        for (row, values) in stiffness.chunks_exact_mut(2 * DIMENSION).enumerate() {
-            let (first, second) = values.split_at_mut(DIMENSION);
-            let (own, other) = if row < DIMENSION { (first, second) } else { (second, first) };
-            let row = row % DIMENSION;
-            for (column, (own, other)) in own.iter_mut().zip(other).enumerate() {
+        let (upper, lower) = stiffness.split_at_mut(2 * DIMENSION * DIMENSION);
+        for row in 0..DIMENSION {
+            let upper = &mut upper[2 * DIMENSION * row..][..2 * DIMENSION];
+            let lower = &mut lower[2 * DIMENSION * row..][..2 * DIMENSION];
+            for column in 0..DIMENSION {
                 let along = deformed.direction[row] * deformed.direction[column];
                 let across = if row == column { 1.0 - along } else { -along };
                 let value = slope * along + geometric * across;
-                (*own, *other) = (value, -value);
+                (upper[column], upper[DIMENSION + column]) = (value, -value);
+                (lower[column], lower[DIMENSION + column]) = (-value, value);
             }
         }
     }
