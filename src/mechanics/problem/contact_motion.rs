@@ -1,4 +1,10 @@
 //! The motion of a contact with the degrees of freedom of the structure, and its forces on them.
+//!
+//! ```text
+//! x = m(u),      ẋ = B(u) u̇,      f = Bᵀ r
+//! ```
+//!
+//! For a node in front of a rigid obstacle `B` selects its translations; see `contact::kinematics` for the others.
 
 use crate::mechanics::contact::ContactPair;
 use crate::mechanics::contact::kinematics::{CoupledKinematics, Kinematics};

@@ -1,4 +1,10 @@
-//! From the degrees of freedom of the structure to those of an element, and back.
+//! Assembly: from the degrees of freedom of the structure to those of an element, and back.
+//!
+//! ```text
+//! u_e = A_e u,      f_int = Σ_e A_eᵀ f_e(u_e),      K = Σ_e A_eᵀ K_e(u_e) A_e
+//! ```
+//!
+//! `A_e` selects the degrees of freedom of the element `e`; the list [`ElementAt::freedoms`] stands for it.
 
 use crate::mechanics::structure::elements::{FiniteElement, Stretching};
 
@@ -94,7 +100,7 @@ impl ElementAt<'_> {
         }
     }
 
-    /// The same for any number of nodes.
+    /// As [`each_entry`](Self::each_entry), for any number of nodes.
     fn each_entry_of(self, nodes: usize, matrix: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
         let count = self.freedoms.len();
         let of_node = count / nodes;

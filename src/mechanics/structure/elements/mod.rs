@@ -11,7 +11,7 @@ use std::fmt::Debug;
 /// as many of its rotations as [`rotations`](Self::rotations) says. `stiffness` is a square matrix over these degrees
 /// of freedom, row by row.
 pub trait FiniteElement: Debug + Send + Sync {
-    /// The nodes that the element joins.
+    /// The nodes that the element joins, at least one, each once.
     fn nodes(&self) -> &[usize];
 
     /// The number of rotations that the element has at each of its nodes.
