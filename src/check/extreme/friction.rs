@@ -1,4 +1,4 @@
-//! Friction from nothing to a million, at its critical value, and contact with zero reaction at the start.
+//! Friction from 0 to 1e6, friction at the critical coefficient, and contacts with zero reaction at the start.
 
 use crate::check::verify::case::Case;
 use crate::check::verify::compare::{moved, worse, worst};
@@ -24,7 +24,7 @@ pub fn cases() -> Vec<Case> {
             .ends(StopReason::Mechanism)
             .exact(1e-10, move |path| truss.error(path))
     }));
-    // Exactly k_xx/|k_xy|, where slip goes on under a constant load, and on either side.
+    // The critical coefficient k_xx/|k_xy|, at which the node slips under a constant load, and values on either side.
     for (along, coupling) in [(1.5, 0.75), (1.0, 0.8), (1.0, 0.9)] {
         for off in [0.0, 1e-12, -1e-12, 1e-9, -1e-9, 1e-6, -1e-6] {
             let friction = along / coupling * (1.0 + off);
@@ -37,9 +37,10 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-/// A node that begins on the floor without reaction, `K = [[1, -0.3], [-0.3, 1]]`, μ = 1/2, under `s (c, d)`.
-/// Free where `u = K⁻¹ (c, d) s` rises; stuck where `|c| <= -μ d`; else it slips with `r_n = -d s - 0.3 x` and
-/// `x = s (c ± μ d)/(1 ∓ 0.3 μ)`, upper signs for slip to +x. One of them fits, since `0.3 μ < 1`.
+/// A node that starts on the floor with zero reaction, `K = [[1, -0.3], [-0.3, 1]]`, μ = 1/2, under the force
+/// `s (c, d)`. The contact is free if `u = K⁻¹ (c, d) s` rises, and sticking if `|c| <= -μ d`. Otherwise the contact
+/// slips with `r_n = -d s - 0.3 x` and `x = s (c ± μ d)/(1 ∓ 0.3 μ)`; the upper signs hold for slip to +x. One of the
+/// three cases applies, since `0.3 μ < 1`.
 fn at_rest(degrees: f64) -> Case {
     const COUPLING: f64 = 0.3;
     const FRICTION: f64 = 0.5;

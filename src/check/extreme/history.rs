@@ -20,10 +20,12 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-/// The von Mises truss (h = 1/2) under a spring k on its apex, whose top is pushed down to the drop q: `q = v + P(v)/k`. At
-/// `v = h` the truss is weakest, `dP/dv = -2 (1 - 1/L0)`: there q has a vertical tangent for `k = 2 (1 - 1/L0)`, and snaps
-/// back for softer springs. Driven by q, or by the force. With springs of 1e-5 and less the turn is a cusp: q, of 1e4 and
-/// more, turns within a radius of the order of the spring's part, and the path may end there with `step_underflow`.
+/// The von Mises truss (h = 1/2) with a spring of stiffness k on its apex. The top of the spring is pushed down by q:
+/// `q = v + P(v)/k`. At `v = h` the tangent stiffness of the truss is lowest, `dP/dv = -2 (1 - 1/L0)`. At this point q
+/// has a vertical tangent for `k = 2 (1 - 1/L0)`, and q snaps back for softer springs. The path is driven by q or by
+/// the force. If k is at most 1e-5 of the critical stiffness, the limit point is a cusp: q, which is 1e4 or more,
+/// reverses within a radius of the order of the ratio `part` of the stiffnesses, and the path may end there with
+/// `step_underflow`.
 fn snap_back(part: f64, driven: bool) -> Case {
     let truss = VonMisesSolution { height: 0.5 };
     let stiffness = part * 2.0 * (1.0 - 1.0 / 0.5_f64.hypot(1.0));
@@ -62,7 +64,7 @@ fn snap_back(part: f64, driven: bool) -> Case {
             .map(|cell| bisected(slope, place(cell), place(cell + 1)))
             .collect();
         let found: Vec<&Increment> = points(path, PointKind::SmoothLimit).collect();
-        // With the critical spring both limit points are one, and no limit.
+        // At the critical stiffness the two limit points coincide, and q has no extremum.
         let close_to_critical = driven && (part - 1.0).abs() < 1e-6;
         let known = found.len() == limits.len() || (is_cusp && found.len() < limits.len());
         if !known && !close_to_critical {
@@ -74,8 +76,9 @@ fn snap_back(part: f64, driven: bool) -> Case {
     })
 }
 
-/// A node on a unit spring on the floor (μ = 1/2), pressed by 1, then pulled to and fro between forces ±1: it comes to rest at
-/// `±1/2` after each stroke, and each stroke but the first slips by 1 against the friction force 1/2.
+/// A node on a unit spring on the floor (μ = 1/2), pressed by 1 and then pulled back and forth by forces ±1. The node
+/// comes to rest at `±1/2` after each stroke. The first stroke slips by 1/2, and every further stroke slips by 1,
+/// against the friction force 1/2.
 fn cycle(strokes: usize, increments: usize) -> Case {
     let mut make = plane_model()
         .node("node", &[0.0, 0.0])
@@ -103,8 +106,9 @@ fn cycle(strokes: usize, increments: usize) -> Case {
     case
 }
 
-/// The von Mises truss (h = 1/2) pushed to s = 0.03 (of 0.038) and let go, again and again: it comes back to where it was,
-/// with its work given back (to the bar of energies, which is wider than that of places).
+/// The von Mises truss (h = 1/2), loaded to s = 0.03 (the limit load is 0.038) and unloaded, repeatedly. After each
+/// unloading the apex is back at its initial position, and the external work is recovered. The work is compared with
+/// the tolerance of energies, which is wider than that of displacements.
 fn breathing(strokes: usize, increments: usize) -> Case {
     let truss = VonMisesSolution { height: 0.5 };
     let mut make = truss.make();
@@ -134,7 +138,7 @@ fn ends(path: &[Increment]) -> impl Iterator<Item = &Increment> {
     path.iter().enumerate().filter(last).map(|(_, increment)| increment)
 }
 
-/// A stage that loads nothing is refused, wherever it stands, and named.
+/// A stage without load is refused, at any position, and the error points to the stage or to its forces.
 fn without_load() -> Vec<Case> {
     let make = || {
         plane_model()
@@ -152,9 +156,9 @@ fn without_load() -> Vec<Case> {
     ]
 }
 
-/// Paths that end, or do not begin, where nothing resists.
+/// Paths that end, or cannot start, because a motion meets no resistance.
 fn mechanisms() -> Vec<Case> {
-    // Nothing holds the node up: pulled against the weight 1 it leaves the floor at s = 1.
+    // No element resists an upward motion: a force against the press of 1 lifts the node off the floor at s = 1.
     let lifted = plane_model()
         .node("node", &[0.0, 0.0])
         .spring(&["node"], [[1.0, 0.0], [0.0, 0.0]])
@@ -166,7 +170,7 @@ fn mechanisms() -> Vec<Case> {
     let lifted = Case::new("mechanism", "a node lifted off the floor", lifted)
         .ends(StopReason::Mechanism)
         .exact(1e-10, |path| path.last().map_or(f64::INFINITY, |end| (end.load_factor - 1.0).abs()));
-    // Without friction the block is held by the floor alone.
+    // Along x only friction resists: the block slides at s = μ = 1/2.
     let pushed = plane_model()
         .node("node", &[0.0, 0.0])
         .spring(&["node"], [[0.0, 0.0], [0.0, 1.0]])
@@ -192,12 +196,13 @@ fn mechanisms() -> Vec<Case> {
         .stage("push", &[("c", [1.0, 0.0])], load_above(1.0))
         .request();
     let square = Case::new("mechanism", "a square of bars", square).refused("/model/nodes/c");
-    // The bar of the one-bar truss is unstressed again at x = +a, and its tip free.
+    // At x = +a the bar of the one-bar truss is unstressed again, and its tip is free.
     let truss = OneBarSolution::with_friction(0.3);
     let unloaded = Case::new("mechanism", "a bar that is unstressed again", truss.make().request())
         .ends(StopReason::Mechanism)
         .exact(1e-9, move |path| path.last().map_or(f64::INFINITY, |end| (moved(end, "tip", 0) - 3.0).abs()));
-    // Two bars on a line, pushed across: stiff only to second order, so the path goes on: P = 2 v (1 - 1/L)/L.
+    // Two collinear bars under a transverse force, P = 2 v (1 - 1/L): stiff only to second order. To first order the
+    // structure is a mechanism, so the request is refused.
     let line = plane_model()
         .node("left", &[-1.0, 0.0])
         .node("middle", &[0.0, 0.0])

@@ -1,12 +1,12 @@
-//! Families of stiff and extreme cases, each over decades.
+//! Families of stiff and extreme cases, which vary a parameter over decades.
 //!
 //! | file | families |
 //! |---|---|
-//! | `stiffness` | stiffness ratios, contact against softer structures, nearly coincident nodes, slender triangles |
-//! | `friction` | friction from 0 to 1e6, at its critical value, contact with zero reaction at the start |
+//! | `stiffness` | stiffness ratios, contacts on soft structures, nearly coincident nodes, slender triangles |
+//! | `friction` | friction from 0 to 1e6, the critical friction, contacts with zero reaction at the start |
 //! | `units` | units of length and force, magnitudes of gaps and loads |
-//! | `touch` | grazing touch, a node in a wedge, redundant contacts |
-//! | `together` | limit point and contact change at one point, two events at once or nearly |
+//! | `touch` | grazing contact, a node in a wedge, redundant contacts |
+//! | `together` | limit point and contact change at one point, several simultaneous or nearly simultaneous events |
 //! | `history` | snap-back, loading cycles, stages without load, mechanisms |
 
 pub(crate) mod friction;

@@ -21,7 +21,7 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-/// Two bars on a line, EA = 1 and EA = R, pulled by s: `u_middle = s`, `u_end = s + s/R`.
+/// Two collinear bars, EA = 1 and EA = R, pulled by s: `u_middle = s`, `u_end = s + s/R`.
 fn in_series(ratio: f64) -> Case {
     let request = plane_model()
         .node("pin", &[0.0, 0.0])
@@ -45,15 +45,15 @@ fn in_series(ratio: f64) -> Case {
     })
 }
 
-/// The one-bar truss pulled through a bar of length 1 and EA = R that lies on the floor: the tip's loads are those of
-/// the one-bar truss, the bar's elongation is `s/R`.
+/// The one-bar truss, pulled through a bar of length 1 and EA = R that lies on the floor. The loads of the tip are
+/// those of the one-bar truss, and the elongation of the bar is `s/R`.
 fn dragged(ratio: f64) -> Case {
     let truss = OneBarSolution::with_friction(0.3);
     let mut request =
         truss.make().node("hook", &[-0.5, 0.0]).support("hook", &[Component::Y]).bar("tip", "hook", ratio);
     request.0.model.stages.clear();
     let request = request.stage("pull", &[("hook", [1.0, 0.0])], displacement("tip", Component::X, 2.9, 1.0)).request();
-    // From 1e9 on the programs of the increments need hundreds of quadratic programs each.
+    // Above 1e9, the MPEC of each increment needs hundreds of quadratic programs.
     let methods = if ratio <= 1e9 { BOTH } else { AUTO };
     Case::new("stiffness-ratio", format!("one-bar truss pulled by a bar, 1 : {ratio:e}"), request).by(methods).exact(
         1e-10,
@@ -67,8 +67,8 @@ fn dragged(ratio: f64) -> Case {
     )
 }
 
-/// A block on the floor (μ = 1/2, pressed by 1) held by a spring k and pulled by s through a bar of EA = 1: stuck to
-/// s = 1/2, then `k x = s - 1/2`; the hook is `s` further.
+/// A block on the floor (μ = 1/2, pressed by 1), connected to the ground by a spring k and pulled by s through a bar of
+/// EA = 1. The block sticks up to s = 1/2; then `k x = s - 1/2`. The displacement of the hook is `x + s`.
 fn pulled_block(stiffness: f64) -> Case {
     let until = if stiffness < 1.0 { displacement("block", Component::X, 1.0, 1.0) } else { load_above(1.0) };
     let request = plane_model()
@@ -92,8 +92,8 @@ fn pulled_block(stiffness: f64) -> Case {
     })
 }
 
-/// Klarbring's node (μ = 0.8: loads rise) beside one whose stiffness and forces are R times as large: the same motion.
-/// Each node is held to 1e-10 of its own forces.
+/// Klarbring's node (μ = 0.8: the load rises during slip) beside a node with R times the stiffness and the forces. Both
+/// nodes have the same motion. The tolerance of each node is 1e-10 of its own forces.
 fn side_by_side(ratio: f64) -> Case {
     let first = KlarbringSolution { friction: 0.8, ..KlarbringSolution::PUBLISHED };
     let second = first.in_units(1.0, ratio);
@@ -115,8 +115,9 @@ fn side_by_side(ratio: f64) -> Case {
     })
 }
 
-/// Two one-bar trusses, the second with R times the stiffness and forces: the same motion, each by its own equations,
-/// which are not linear. It ends before the limit point, which both have at once.
+/// Two one-bar trusses; the second has R times the stiffness and the forces of the first. Both trusses have the same
+/// motion, each by separate nonlinear equations. The stage ends before the limit point, which both trusses reach at the
+/// same load.
 fn trusses_side_by_side(ratio: f64) -> Case {
     let truss = OneBarSolution::with_friction(0.3);
     let mut request = truss
@@ -141,8 +142,8 @@ fn trusses_side_by_side(ratio: f64) -> Case {
     })
 }
 
-/// Two bars on a line of EA = 1, the second of length d, the end on the floor (μ = 1/2, pressed by 1): from s = 1/2 on
-/// `u_middle = s - 1/2` and the second bar grows by `(s - 1/2) d`.
+/// Two collinear bars of EA = 1. The second bar has length d, and its end is on the floor (μ = 1/2, pressed by 1). From
+/// s = 1/2 on, `u_middle = s - 1/2`, and the second bar elongates by `(s - 1/2) d`.
 fn near_nodes(distance: f64) -> Case {
     let request = plane_model()
         .node("pin", &[-1.0, 0.0])
@@ -166,9 +167,10 @@ fn near_nodes(distance: f64) -> Case {
     })
 }
 
-/// Two bars (EA = 1) from (0, ±w/2) to a tip at (1, 0) that is pushed across by `w² s`. At the drop v the tip's `u`
-/// follows from `Σ N_i cos_i = 0`, then `w² s = Σ N_i sin_i`, in twice the digits: both forces cancel to the order
-/// `w²`. With `q_i = 2 u + u² + v² ± w v = L_i² - L0²` it is `N_i = q_i/(L0 (L_i + L0))`.
+/// Two bars (EA = 1) from (0, ±w/2) to a tip at (1, 0) under the transverse force `w² s`. At the transverse
+/// displacement v, the axial displacement u follows from `Σ N_i cos_i = 0`, and then `w² s = Σ N_i sin_i`. Both sums
+/// cancel to the order `w²` and are therefore computed with twice the digits. With
+/// `q_i = 2 u + u² + v² ± w v = L_i² - L0²`, the bar forces are `N_i = q_i/(L0 (L_i + L0))`.
 fn slender(width: f64) -> Case {
     let request = plane_model()
         .node("upper", &[0.0, 0.5 * width])
@@ -192,7 +194,7 @@ fn slender(width: f64) -> Case {
         })
 }
 
-/// `u` and `s` at a drop.
+/// `u` and `s` at a transverse displacement.
 fn slender_load(width: f64, drop: f64) -> (f64, f64) {
     let (v, half) = (TwoFloat::from(drop), TwoFloat::from(0.5 * width));
     let rest = (half * half + 1.0).sqrt();
@@ -208,7 +210,7 @@ fn slender_load(width: f64, drop: f64) -> (f64, f64) {
         let [first, second] = forces(u);
         first.0 + second.0
     };
-    // Newton's method with the stiffness of both bars along themselves; the error falls by v² in each round.
+    // Newton's method with the constant axial stiffness of both bars; each iteration reduces the error by a factor v².
     let mut u = TwoFloat::from(0.0);
     for _ in 0..60 {
         u -= along(u) * 0.5;

@@ -1,4 +1,4 @@
-//! Limit point and contact change at one point; two events at once, and nearly at once.
+//! Limit point and contact change at one point; several events at the same load, or at nearly the same load.
 
 use crate::check::verify::case::Case;
 use crate::check::verify::compare::{moved, of_stage, relative, worse, worst};
@@ -19,8 +19,8 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-/// The von Mises truss (h = 1/2) over a floor that its apex reaches at the limit point, or off it by a little: the load is
-/// that of the truss down to the floor and rises from there on, `r_n = s - P`.
+/// The von Mises truss (h = 1/2) over a floor that the apex reaches at the limit point, or at a small distance from the
+/// limit point. Down to the floor the load is that of the truss. From there on the load rises, with `r_n = s - P`.
 fn landing_at_the_limit(off: f64) -> Case {
     let truss = VonMisesSolution { height: 0.5 };
     let floor = truss.height_at_limit() + off;
@@ -51,7 +51,8 @@ fn name(index: usize) -> String {
     format!("node{index}")
 }
 
-/// Klarbring's nodes with `μ = 1/2 + i δ` (loads rise), `K = [[1, -1/4], [-1/4, 1]]`, pulled by one load: each as if alone.
+/// Klarbring's nodes with `μ = 1/2 + i δ` (the loads rise) and `K = [[1, -1/4], [-1/4, 1]]`, pulled by one load. Each
+/// node moves as if the node were alone.
 fn slips(number: usize, apart: f64) -> Case {
     let alone = move |index: usize| KlarbringSolution {
         along: 1.0,
@@ -85,8 +86,9 @@ fn row(number: usize, alone: impl Fn(usize) -> KlarbringSolution, last: f64) -> 
         .request()
 }
 
-/// Two of Klarbring's nodes (μ = 1.5) whose slips let the load fall. Where they are the same, both slip at once, which
-/// dissipates more per arc length; else the first slips alone, and the second after the first has left the floor.
+/// Two of Klarbring's nodes (μ = 1.5), whose loads fall during slip. If the nodes are identical, both slip at the same
+/// time, which dissipates more per arc length. Otherwise the first node slips alone, and the second node slips after
+/// the first has left the floor.
 fn falling_slips(apart: f64) -> Case {
     let alone =
         move |index: usize| KlarbringSolution { friction: 1.5 + index as f64 * apart, ..KlarbringSolution::PUBLISHED };
@@ -103,7 +105,8 @@ fn falling_slips(apart: f64) -> Case {
     )
 }
 
-/// Nodes on unit springs, gaps `1/2 + i δ` above the floor, pressed by s: each lands at `s = g`, then `r_n = s - g`.
+/// Nodes on unit springs at gaps `1/2 + i δ` above the floor, pressed by s. Each node lands at `s = g`; then
+/// `r_n = s - g`.
 fn landings(number: usize, apart: f64) -> Case {
     let gap = move |index: usize| 0.5 + index as f64 * apart;
     let names: Vec<String> = (0..number).map(name).collect();

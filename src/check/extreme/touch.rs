@@ -1,4 +1,4 @@
-//! Grazing touch, a node in a wedge, redundant contacts.
+//! Grazing contact, a node in a wedge, redundant contacts.
 
 use crate::check::verify::case::Case;
 use crate::check::verify::compare::{moved, of_stage, relative, worse, worst};
@@ -21,9 +21,9 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-/// A node on a unit spring, pushed along x by s past a frictionless ball of radius 1 whose top is at (1, δ): for `δ <= 0`
-/// it passes straight on, `x = s`; where it is on the ball, at the angle φ from the top, `x = 1 + sin φ`, `y = δ - (1 - cos φ)`
-/// and the spring's force leans with the normal: `s = x - y tan φ`.
+/// A node on a unit spring, pushed along x by s past a frictionless ball of radius 1 whose top is at (1, δ). For
+/// `δ <= 0` the node moves straight on, `x = s`. On the ball, at the angle φ from the top, `x = 1 + sin φ` and
+/// `y = δ - (1 - cos φ)`, and the sum of spring force and load is along the normal: `s = x - y tan φ`.
 fn grazing(rise: f64) -> Case {
     let request = plane_model()
         .node("node", &[0.0, 0.0])
@@ -46,9 +46,9 @@ fn grazing(rise: f64) -> Case {
     })
 }
 
-/// A node between two flanks of slope t, friction μ, on a spring k = 1/2, pressed by 1, then pushed to the right by s: held
-/// up to `s = (t + μ)/(1 - μ t)`, for ever if `μ t >= 1`; then up the right flank, at the distance d
-/// `s = (k d sqrt(1 + t²) + t + μ)/(1 - μ t)`.
+/// A node between two flanks of slope t with friction μ, on a spring k = 1/2, pressed by 1 and then pushed to the right
+/// by s. The node sticks in the corner up to `s = (t + μ)/(1 - μ t)`, and for every s if `μ t >= 1`. Then the node
+/// slips up the right flank; at the distance d, `s = (k d sqrt(1 + t²) + t + μ)/(1 - μ t)`.
 fn wedge(slope: f64, friction: f64) -> Case {
     let root = slope.hypot(1.0);
     let leaves = friction * slope < 1.0;
@@ -87,7 +87,7 @@ fn wedge(slope: f64, friction: f64) -> Case {
     })
 }
 
-/// Klarbring's node with the same contact n times over: the reactions add up to the one of a single contact.
+/// Klarbring's node with n copies of the same contact: the sum of the reactions is the reaction of a single contact.
 fn repeated(times: usize) -> Case {
     let node = KlarbringSolution::PUBLISHED;
     let request = (0..times).fold(node.make(), |make, _| make.contact("node", "floor", node.friction)).request();
@@ -95,7 +95,7 @@ fn repeated(times: usize) -> Case {
         .exact(1e-10, move |path| node.error(path))
 }
 
-/// A second floor through the same point, tilted against the slip by ε: the path changes by a multiple of ε.
+/// A second floor through the same point, tilted against the slip by ε. The tilt changes the path by a multiple of ε.
 fn tilted(tilt: f64) -> Case {
     let node = KlarbringSolution { friction: 0.8, ..KlarbringSolution::PUBLISHED };
     let request = node
@@ -110,7 +110,7 @@ fn tilted(tilt: f64) -> Case {
         })
 }
 
-/// A second floor a depth ε beneath, which is never reached.
+/// A second floor at a depth ε below the first floor. The node never reaches the second floor.
 fn beneath(depth: f64) -> Case {
     let node = KlarbringSolution { friction: 0.8, ..KlarbringSolution::PUBLISHED };
     let request = node

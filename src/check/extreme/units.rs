@@ -47,7 +47,8 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-/// A node a gap g above the floor on a unit spring, pressed by s up to 1 + 2 g: it lands at `s = g`, then `r_n = s - g`.
+/// A node on a unit spring at a gap g above the floor, pressed by s up to 1 + 2 g. The node lands at `s = g`; then
+/// `r_n = s - g`.
 fn gap(gap: f64) -> Case {
     let request = plane_model()
         .node("node", &[0.0, gap])
@@ -63,7 +64,7 @@ fn gap(gap: f64) -> Case {
             worse(place, relative(increment.contacts[0].normal_reaction, (s - gap).max(0.0), gap.max(1.0)))
         });
         let landings: Vec<f64> = changes(path).map(|point| relative(point.load_factor, gap, 1.0)).collect();
-        // What is within the bar is closed from the start.
+        // A gap within the tolerance may be closed from the start, without a contact change.
         let told = landings.len() == 1 || (landings.is_empty() && gap <= 1e-10);
         if told { worse(worst(states), landings.into_iter().fold(0.0, worse)) } else { f64::INFINITY }
     })

@@ -1,8 +1,8 @@
-//! Checks contacts without a row in an increment: they are out of reach, so that their gaps must be open.
+//! Checks the contacts without a row in an increment. These contacts are out of reach, so that their gaps must be open.
 //!
-//! Over a dimensionless distance `a` a node moves by at most `ℓ a cos α`, its obstacle by `|d| σ a sin α` (`d` its motion
-//! per load factor, `σ` the load scale), so a gap changes by at most `a √(ℓ² + |d|² σ²)`, and an open gap need not be
-//! checked before it could have closed.
+//! Over a dimensionless distance `a`, a node moves by at most `ℓ a cos α` and an obstacle by at most `|d| σ a sin α`,
+//! where `d` is the motion of the obstacle per load factor and `σ` the load scale. A gap therefore changes by at most
+//! `a √(ℓ² + |d|² σ²)`, and an open gap needs no check until the path is long enough to close the gap.
 
 use crate::check::measure::errors::{Errors, worse};
 use crate::check::measure::posted::{Posted, PostedContact, PostedLoading};
@@ -19,9 +19,10 @@ pub(super) struct Apart {
     length: f64,
     /// For each contact, the largest change of its gap per unit distance (length).
     fastest: Vec<f64>,
-    /// The length of the path so far.
+    /// The dimensionless length of the path so far.
     travelled: f64,
-    /// Contacts without a row, and perhaps some that have one by now, in a heap; the one that may close first is on top.
+    /// A heap of the contacts without a row, and possibly of contacts that have a row by now; the contact that may
+    /// close first is on top.
     waiting: BinaryHeap<Reverse<SeparatedContact>>,
     /// For each contact, whether it has a row.
     has_row: Vec<bool>,
@@ -65,7 +66,7 @@ impl Apart {
         Self { length, fastest, travelled: 0.0, waiting, has_row, rows: Vec::new() }
     }
 
-    /// Begins at the current state, without any rows.
+    /// Starts at the current state, without any rows.
     pub fn begin(&mut self, posted: &Posted, loading: &PostedLoading, displacements: &[MeasuredVector]) {
         let waiting = |(contact, posted_contact)| {
             let gap = posted.frame(posted_contact, loading, displacements).gap;
@@ -87,7 +88,8 @@ impl Apart {
         let before = std::mem::replace(&mut self.rows, rows.to_vec());
         before.iter().for_each(|contact| self.has_row[*contact] = false);
         rows.iter().for_each(|contact| self.has_row[*contact] = true);
-        // They are put into the heap again; one that is still in it is there twice, which does no harm.
+        // Contacts that lost their row return to the heap. A contact that is still in the heap is then there twice,
+        // which does no harm.
         let lost = before.iter().filter(|contact| !self.has_row[**contact]);
         self.waiting
             .extend(lost.map(|contact| Reverse(SeparatedContact { until: f64::NEG_INFINITY, contact: *contact })));
@@ -107,7 +109,7 @@ impl Apart {
         }
         self.travelled += distance;
         if !self.travelled.is_finite() {
-            // An error without bound already, of `arc_length`.
+            // The error of `arc_length` is already unbounded.
             self.travelled = 0.0;
             self.waiting =
                 self.waiting.drain().map(|Reverse(one)| Reverse(SeparatedContact { until: 0.0, ..one })).collect();

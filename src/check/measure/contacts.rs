@@ -1,11 +1,11 @@
-//! Judges a contact by the laws of contact and friction.
+//! Checks a contact by the laws of contact and friction.
 
 use crate::check::measure::errors::{Errors, worse};
 use crate::check::measure::obstacles::MeasuredFrame;
 use crate::check::measure::vector::{MeasuredVector, angle};
 use crate::result::increment::{ContactState, Status};
 
-/// A traction within this part of `μ r_n` of the cone is on it.
+/// A traction within this fraction of `μ r_n` of the friction cone counts as on the cone.
 const ON_THE_CONE: f64 = 1e-6;
 
 /// A contact at the end of an increment.
@@ -13,16 +13,16 @@ pub(super) struct Seen<'a> {
     pub state: &'a ContactState,
     pub frame: &'a MeasuredFrame,
     pub friction: f64,
-    /// Motion of the node relative to the obstacle in the increment (length).
+    /// Motion of the node relative to the obstacle during the increment (length).
     pub motion: MeasuredVector,
-    /// `-r_t/|r_t|` in space where the increment began, if the contact was on its cone there.
+    /// `-r_t/|r_t|` in space at the start of the increment, if the contact was on the friction cone there; in 3D only.
     pub direction_before: Option<MeasuredVector>,
     pub dimension: usize,
 }
 
 impl Seen<'_> {
-    /// Adds the errors of the contact to `errors`; answers its direction of slip at the end, if it is on the friction cone.
-    /// `length` and `force` make lengths and forces dimensionless.
+    /// Adds the errors of the contact to `errors`. In 3D, returns the direction of slip at the end of the increment if
+    /// the contact is on the friction cone. `length` and `force` make lengths and forces dimensionless.
     pub fn judge(&self, length: f64, force: f64, errors: &mut Errors) -> Option<MeasuredVector> {
         let Self { state, frame, friction, .. } = *self;
         let beyond_rounding =
@@ -38,7 +38,7 @@ impl Seen<'_> {
         let size = traction[0].hypot(traction[1]);
         let radius = friction * normal;
 
-        // Written out, as `min` ignores NaN.
+        // A comparison, since `min` ignores NaN.
         let apart = state.gap / length;
         errors.contact = worse(errors.contact, if normal < apart { normal.abs() } else { apart.abs() });
         errors.contact = worse(errors.contact, if normal.is_nan() { normal } else { 0.0 });
@@ -46,14 +46,15 @@ impl Seen<'_> {
 
         let slip = frame.along(&self.motion);
         let distance = slip[0].hypot(slip[1]);
-        // Motion within the rounding of the coordinates has no direction.
+        // A motion within the rounding error of the coordinates has no direction.
         let moves = distance > frame.rounding;
         let slipped = beyond_rounding(distance);
         let on_the_cone = size > 0.0 && size >= (1.0 - ON_THE_CONE) * radius;
         let shrunk = if moves { slipped / distance } else { 0.0 };
         let slip_scaled = slip.map(|value| value * shrunk);
         let off = if on_the_cone {
-            // Along the traction only: across it the chord of a curving slip is judged by its angle.
+            // Only the slip along the traction counts; on a curved path, `slip_direction` measures the slip across the
+            // traction.
             let against = -(traction[0] * slip_scaled[0] + traction[1] * slip_scaled[1]) / size;
             size - (size + against).clamp(-radius.max(0.0), radius.max(0.0))
         } else {
@@ -86,7 +87,7 @@ impl Seen<'_> {
     }
 }
 
-/// `|t - P(t - x)|`, `P` the projection onto the disc.
+/// `|t - P(t - x)|`, where `P` is the projection onto the disc of the given radius.
 fn natural_map(traction: [f64; 2], slip: [f64; 2], radius: f64) -> f64 {
     let moved = [traction[0] - slip[0], traction[1] - slip[1]];
     let size = moved[0].hypot(moved[1]);

@@ -8,9 +8,9 @@ use crate::model::request::{Element as Posted, Model, Strain};
 pub(super) enum MeasuredElement {
     Bar {
         ends: [usize; 2],
-        /// From the first end to the second, undeformed.
+        /// From the first end to the second in the initial configuration.
         reference: MeasuredVector,
-        /// Its length.
+        /// The length of `reference`.
         before: f64,
         rest: f64,
         stiffness: f64,
@@ -19,30 +19,31 @@ pub(super) enum MeasuredElement {
     },
     Spring {
         node: usize,
-        /// `None`: the ground.
+        /// `None` is the ground.
         other: Option<usize>,
-        /// Its rows.
+        /// The rows of the stiffness matrix.
         stiffness: [MeasuredVector; 3],
     },
 }
 
-/// The forces of the nodes on an element, on the second node and opposite on the first, and its energy.
+/// The nodal forces on an element, opposite at the two nodes, and the energy of the element.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ElementResponse {
     pub first: Option<usize>,
     pub second: usize,
-    /// On the second node.
+    /// The force at the second node.
     pub force: MeasuredVector,
     pub energy: f64,
-    /// Rounding error of the force due to the displacements (and, for a bar, its coordinates, relative to its length).
+    /// Rounding error of the force due to the displacements.
     pub rounding: f64,
 }
 
-/// Error of a difference of two rounded numbers that were computed from rounded ones, in units of round-off.
+/// Error of a difference of two rounded numbers that were computed from rounded numbers, in units of the machine
+/// epsilon.
 const ROUNDINGS: f64 = 16.0;
 
 impl MeasuredElement {
-    /// `None` where a node is unknown.
+    /// `None` if a node is unknown.
     pub fn new(model: &Model, posted: &Posted) -> Option<Self> {
         let index = |name: &String| model.nodes.get_index_of(name);
         match posted {
@@ -62,7 +63,6 @@ impl MeasuredElement {
         }
     }
 
-    /// The response to the given displacements of the nodes.
     /// Approximately the largest stiffness in any direction, in the undeformed state.
     pub fn stiffness(&self) -> f64 {
         match self {
@@ -71,6 +71,7 @@ impl MeasuredElement {
         }
     }
 
+    /// The response to the given displacements of the nodes.
     pub fn response(&self, u: &[MeasuredVector]) -> ElementResponse {
         match self {
             Self::Bar { ends, reference, before, rest, stiffness, prestress, strain } => {
@@ -82,7 +83,7 @@ impl MeasuredElement {
                 let elongation = grown + (before - rest);
                 let linear = elongation / rest;
                 let stretch = length / rest;
-                // The measure of strain, and the axial force over EA.
+                // The strain measure, and the axial force over EA.
                 let (measure, elastic) = match strain {
                     Strain::Engineering => (linear, linear),
                     Strain::Green => {
@@ -96,7 +97,7 @@ impl MeasuredElement {
                 };
                 let force = deformed * ((stiffness * elastic + prestress) / length);
                 let energy = 0.5 * stiffness * rest * measure * measure + prestress * elongation;
-                // The tangent of Green strain grows with the square of the stretch.
+                // The tangent stiffness for Green strain grows with the square of the stretch.
                 let tangent = stiffness / rest * stretch.max(1.0).powi(2);
                 let moved = largest(&u[ends[0]]).max(largest(&u[ends[1]]));
                 let rounding = ROUNDINGS * f64::EPSILON * tangent * moved;

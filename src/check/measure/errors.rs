@@ -1,4 +1,4 @@
-//! The figures of the measure, and their maxima over a path.
+//! The errors of an increment, and their maxima over a path.
 
 use serde::{Deserialize, Serialize};
 
@@ -34,11 +34,11 @@ pub struct Errors {
     pub slip_direction: f64,
 }
 
-/// How many figures there are.
+/// Number of errors of an increment.
 const FIGURES: usize = 10;
 
 impl Errors {
-    /// The names of the figures, as they are written.
+    /// The names of the errors, as in the results.
     pub const NAMES: [&'static str; FIGURES] = [
         "equilibrium",
         "support",
@@ -52,7 +52,7 @@ impl Errors {
         "slip_direction",
     ];
 
-    /// In the order of [`Errors::NAMES`].
+    /// The errors in the order of [`Errors::NAMES`].
     pub fn values(&self) -> [f64; FIGURES] {
         [
             self.equilibrium,
@@ -68,14 +68,14 @@ impl Errors {
         ]
     }
 
-    /// The largest of equilibrium, support, contact, friction, cone, reported and arc length: what a point on the path
-    /// has to satisfy whatever the step.
+    /// The largest error of equilibrium, support, contact, friction, cone, reported and arc length: the conditions that
+    /// a point of the path must satisfy for any step.
     pub fn largest_of_state(&self) -> f64 {
         self.values()[..7].iter().copied().fold(0.0, worse)
     }
 }
 
-/// The larger error; one that is not a number, or not finite, is without bound.
+/// The larger error; an error that is NaN or infinite becomes the largest finite number.
 pub(super) fn worse(error: f64, other: f64) -> f64 {
     if other.is_nan() { f64::MAX } else { error.max(other).min(f64::MAX) }
 }
@@ -109,7 +109,7 @@ pub struct Maxima {
 }
 
 impl Maxima {
-    /// Takes the errors of an increment in.
+    /// Includes the errors of an increment.
     pub fn include(&mut self, index: u64, errors: &Errors) {
         let figures = [
             &mut self.equilibrium,

@@ -1,5 +1,5 @@
-//! The history of a judge, with which a path that is resumed, or followed along another direction, is judged as if it had not
-//! been interrupted.
+//! The history of a judge. A judge with this history checks a path that is resumed, or followed along another
+//! direction, as if the path had not been interrupted.
 
 use crate::check::measure::Judge;
 use crate::check::measure::posted::{Posted, PostedLoading};
@@ -7,15 +7,15 @@ use crate::check::measure::vector::MeasuredVector;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The version of the format, which changes with its meaning.
+/// The version of the format. The version changes when the meaning of the data changes.
 const VERSION: u32 = 2;
 
-/// The data of the previous point by which the next increment is judged.
+/// The data of the previous point that the check of the next increment needs.
 #[derive(Debug, Clone)]
 pub(super) struct PreviousPoint {
     pub displacements: Vec<MeasuredVector>,
     pub shifts: Vec<MeasuredVector>,
-    /// `-r_t/|r_t|` in space of the contacts that are on their cones; in 3D only.
+    /// `-r_t/|r_t|` in space of the contacts that are on their friction cones; in 3D only.
     pub directions: BTreeMap<usize, MeasuredVector>,
     /// Load factor in the current stage.
     pub load: f64,
@@ -34,18 +34,19 @@ impl PreviousPoint {
     }
 }
 
-/// The history of a [`Judge`], in the units of the user. Its numbers are read back from JSON exactly.
+/// The history of a [`Judge`], in the units of the user. Writing to JSON and reading back preserves the numbers
+/// exactly.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JudgeHistory {
     version: u32,
-    /// Loads at which the previous stages ended.
+    /// Load factors at which the previous stages ended.
     reached: Vec<f64>,
     load: f64,
     arc_length: f64,
-    /// One for each node.
+    /// One displacement for each node.
     displacements: Vec<MeasuredVector>,
-    /// Directions of slip of the contacts that have one, in order.
+    /// The contacts with a direction of slip, in order, and their directions.
     directions: Vec<(usize, MeasuredVector)>,
     largest_force: f64,
     largest_energy: f64,
@@ -73,10 +74,10 @@ pub fn history_of(judge: &Judge) -> JudgeHistory {
     }
 }
 
-/// The judge with what it, or another of the same model, remembered.
+/// The judge with the recorded history of this judge, or of another judge of the same model.
 ///
 /// # Errors
-/// A history of another model, or of another version of this program.
+/// The history belongs to another model or has another version.
 pub fn take_up(mut judge: Judge, history: JudgeHistory) -> Result<Judge, HistoryError> {
     let JudgeHistory { version, reached, load, arc_length, displacements, directions, largest_force, largest_energy } =
         history;

@@ -1,41 +1,46 @@
-//! The measure of error, independent of the solver: it reads the posted model and the streamed increments, in the units of the
-//! user, and shares no code with the solver.
+//! The measure of error, independent of the solver. The measure reads the posted model and the streamed increments, in
+//! the units of the user, and shares no code with the solver.
 //!
 //! ```text
-//! equilibrium     max |Σ N d + K Δu - s f - f_held - Σ n r_n - Σ t r_t| / F    free components; F: largest force so far
-//! support         max |u - s u_given - u_held| / ℓ                            supported components
-//! contact         max |min(g/ℓ, r_n/F)|                                       natural map of 0 <= g ⊥ r_n >= 0
-//! friction        max |t - P(t - x)|,   t = r_t/F,   x = Tᵀ(Δu - Δd)/ℓ         natural map of Coulomb's law;
+//! equilibrium     max |Σ N d + K Δu - s f - f_held - Σ n r_n - Σ t r_t| / F   free components; F: largest force so far
+//! support         max |u - s u_given - u_held| / ℓ                           supported components
+//! contact         max |min(g/ℓ, r_n/F)|                                      natural map of 0 <= g ⊥ r_n >= 0
+//! friction        max |t - P(t - x)|,   t = r_t/F,   x = Tᵀ(Δu - Δd)/ℓ        natural map of Coulomb's law;
 //!                 P: projection onto the disc of radius μ r_n/F;  d: the obstacle's translation
 //! cone            max (|r_t| - μ r_n)/F
-//! reported        |gap - g|/ℓ, |slip - Tᵀ(Δu - Δd)|/ℓ;   free: |r|/F;   stick: |x|;   slip: ||r_t| - μ r_n|/F
-//! arc_length      |‖(Δu/ℓ, Δs/σ)‖ - step|,   |arc_length - arc_length before - step|
-//! energy          |W - E - D| / largest energy so far (at least 1e-12 F ℓ)
-//! strain_energy   |E - E(u)| / the same
+//! reported        |gap - g|/ℓ, |slip - Tᵀ(Δu - Δd)|/ℓ;
+//!                 free: max(|r_n|, |r_t|)/F;   stick: |x|;   slip: ||r_t| - μ r_n|/F
+//! arc_length      |a - step| / max(1, a),  a = ‖(Δu/ℓ, Δs/σ)‖;   |arc_length - A| / max(1, A),
+//!                 A = arc_length before + step
+//! energy          |W - E - D| / largest energy so far (at least 1e-10 F ℓ)
+//! strain_energy   |E - E(u) + E(0)| / the same
 //! slip_direction  3D: angle between the slip and the sum of the unit directions -r_t/|r_t| at its two ends
 //! ```
 //!
-//! Errors of a gap or of a balance of forces that are due to the rounding of the published numbers do not count: for a bar,
-//! unit round-off times `EA/L0` times its displacements and coordinates; for a spring, times `|K|` and its displacements. Both
-//! are only relevant for large motions of stiff elements.
+//! Errors of a gap, a slip or a balance of forces that are due to the rounding of the published numbers do not count.
+//! With the machine epsilon `ε`, this rounding error is `16 ε` times the largest coordinate, displacement or radius for
+//! a gap or a slip, `16 ε` times `EA/L0 max(1, L/L0)²` times the largest displacement for a bar, and `16 ε` times the
+//! largest row sum of `|K|` times the largest displacement for a spring. The rounding errors of forces matter only for
+//! large motions of stiff elements.
 //!
-//! `ℓ` and `σ` are the plan's displacement and load scales. (Natural map: F. Facchinei, J.-S. Pang, *Finite-Dimensional
-//! Variational Inequalities and Complementarity Problems*, Springer 2003, section 1.5; of Coulomb's law: P. Alart,
-//! A. Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353, doi:10.1016/0045-7825(91)90022-X.) `W` and `D` are the
-//! reported values: they are integrals along the path, which cannot be computed from two increments.
+//! `ℓ` and `σ` are the displacement scale and the load scale of the plan. (Natural map: F. Facchinei, J.-S. Pang,
+//! *Finite-Dimensional Variational Inequalities and Complementarity Problems*, Springer 2003, section 1.5; of Coulomb's
+//! law: P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353, doi:10.1016/0045-7825(91)90022-X.) `W`
+//! and `D` are the reported values: these are integrals along the path, which cannot be computed from two increments.
 //!
-//! In 3D the slip of an increment is the chord of a curve. Traction opposes the velocity, and the chord of a curve with
-//! unit end directions `d0`, `d1` is along `d0 + d1` up to an angle of second order in the step. So on the cone the
-//! friction's natural map takes the part of the chord along the traction, and the chord is judged by that angle, which
-//! is a figure of its own: it falls with the step and is not an error of the state. It is 0 where the slip began off the
-//! cone (a first touch), where no direction is known.
+//! In 3D the slip of an increment is the chord of a curve. The traction opposes the velocity, and the chord of a curve
+//! with unit end directions `d0`, `d1` is along `d0 + d1` up to an angle of second order in the step. On the friction
+//! cone, the natural map of friction therefore includes only the part of the chord along the traction. The angle of the
+//! chord is the separate error `slip_direction`: the angle decreases with the step and is not an error of the state.
+//! `slip_direction` is 0 if the contact was not on the friction cone at the start of the increment (for example, at the
+//! first contact), since no direction is known there.
 //!
-//! | file | what it does |
+//! | file | contents |
 //! |---|---|
-//! | `errors` | the figures and their maxima |
-//! | `posted`, `elements`, `obstacles`, `vector` | the model as posted, with numbers for names |
-//! | `contacts` | one contact |
-//! | `rows`, `apart` | the contacts with a row in an increment, and those without |
+//! | `errors` | the errors and their maxima |
+//! | `posted`, `elements`, `obstacles`, `vector` | the posted model, with indices instead of names |
+//! | `contacts` | the check of one contact |
+//! | `rows`, `apart` | the contacts with a row in an increment, and the contacts without a row |
 //! | `history` | the history of a judge, for checkpoints |
 
 pub(crate) mod apart;
@@ -63,21 +68,21 @@ use posted::{Posted, PostedLoading};
 use rows::{ContactRows, RowChange};
 use vector::{MeasuredVector, largest, padded};
 
-/// Forces below this part of the force that stretches the stiffest element by the displacement scale count as zero.
+/// Forces below this fraction of the force that stretches the stiffest element by the displacement scale count as zero.
 const NO_FORCE: f64 = 1e-20;
-/// Energies below this part of the largest force times the displacement scale count as rounding errors.
+/// Energies below this fraction of the largest force times the displacement scale count as rounding errors.
 const NO_ENERGY: f64 = 1e-10;
 
-/// Judges the increments of a path, in order.
+/// Checks the increments of a path, in order.
 #[derive(Debug, Clone)]
 pub struct Judge {
     posted: Posted,
-    /// The plan's displacement scale.
+    /// The displacement scale of the plan.
     length: f64,
-    /// Forces below this count as zero: rounding errors without load.
+    /// Forces below this value are rounding errors of an unloaded state and count as zero.
     no_force: f64,
     stage: usize,
-    /// Loads at which the previous stages ended.
+    /// Load factors at which the previous stages ended.
     reached: Vec<f64>,
     held: PostedLoading,
     before: PreviousPoint,
@@ -102,8 +107,8 @@ struct Workspace {
 }
 
 impl Judge {
-    /// The judge of a checked request. The scales are those of the plan: `displacement_scale` makes lengths dimensionless,
-    /// `load_scales` the load factor of each stage.
+    /// The judge of a checked request. The scales are those of the plan: `displacement_scale` makes lengths
+    /// dimensionless, `load_scales` makes the load factor of each stage dimensionless.
     pub fn new(request: &JobRequest, displacement_scale: f64, load_scales: &[f64]) -> Self {
         let posted = Posted::new(request, load_scales);
         let none = PostedLoading::none(&posted);
@@ -144,7 +149,7 @@ impl Judge {
         errors.equilibrium = worse(0.0, self.unbalanced() / force);
         errors.support = self.off_support();
         let distance = self.distance(increment);
-        // The rounding error of a step grows with its length.
+        // The rounding error of a step grows with the length of the step.
         let of_step = (distance - increment.step).abs() / distance.max(1.0);
         let sum = self.before.arc_length + increment.step;
         let of_sum = (increment.arc_length - sum).abs() / sum.max(1.0);
@@ -176,7 +181,7 @@ impl Judge {
         errors
     }
 
-    /// Sets the stage, displacements and load of an increment; `false` if it does not fit the model.
+    /// Sets the stage, displacements and load of an increment; returns `false` if the increment does not fit the model.
     fn read(&mut self, increment: &Increment) -> bool {
         let posted = &self.posted;
         let known = posted.stages[self.stage..].iter().position(|stage| stage.name == *increment.stage);
@@ -204,7 +209,7 @@ impl Judge {
         fits
     }
 
-    /// Sums up the forces on every node; answers the strain energy.
+    /// Sums the forces on every node; returns the strain energy.
     fn forces(&mut self, increment: &Increment) -> f64 {
         let (posted, work) = (&self.posted, &mut self.work);
         let mut most = self.largest_force;
@@ -233,7 +238,7 @@ impl Judge {
             work.balance[contact.node] -= contacts::force(state, &frame);
             most = most.max(state.normal_reaction.abs());
         }
-        // An error without bound is one already; what scales the others stays a number.
+        // A force that is not finite already gives an unbounded error; the scale of the other errors stays finite.
         if most.is_finite() {
             self.largest_force = most;
         }

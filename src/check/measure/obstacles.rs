@@ -1,7 +1,7 @@
 //! Obstacles as posted: their position under a load factor, and their frame at a node, for the measure only.
 //!
 //! A frame is the gap, the unit normal into the free side, and the tangents: in 2D `(n_y, -n_x)`; in 3D
-//! `t1 = (e_k - n_k n)/|.|` with `k` the first of the smallest `|n_k|`, and `t2 = n x t1`.
+//! `t1 = (e_k - n_k n)/|.|` with `k` the first index of the smallest `|n_k|`, and `t2 = n x t1`.
 
 use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::model::request::{Obstacle as Posted, Side};
@@ -9,7 +9,7 @@ use crate::model::request::{Obstacle as Posted, Side};
 /// An obstacle at rest.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MeasuredObstacle {
-    /// A point of a plane, or a ball's centre.
+    /// A point of a plane, or the centre of a ball.
     place: MeasuredVector,
     shape: ObstacleShape,
 }
@@ -18,7 +18,7 @@ pub(super) struct MeasuredObstacle {
 enum ObstacleShape {
     /// Unit normal into the free side.
     Plane(MeasuredVector),
-    /// `sign` is 1 where the free side is outside.
+    /// `sign` is 1 if the free side is outside, otherwise -1.
     Ball { radius: f64, sign: f64 },
 }
 
@@ -29,7 +29,7 @@ pub(super) struct MeasuredFrame {
     /// Rounding error of the gap due to the coordinates.
     pub rounding: f64,
     pub normal: MeasuredVector,
-    /// `dimension - 1` tangents; a remaining one is zero.
+    /// `dimension - 1` tangents; in 2D the second tangent is zero.
     pub tangents: [MeasuredVector; 2],
 }
 

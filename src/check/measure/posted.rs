@@ -1,4 +1,4 @@
-//! The posted model with numbers instead of names, so that judging an increment needs no look-ups.
+//! The posted model with indices instead of names, so that the check of an increment needs no look-ups.
 
 use crate::check::measure::elements::MeasuredElement;
 use crate::check::measure::obstacles::{MeasuredFrame, MeasuredObstacle};
@@ -13,7 +13,7 @@ pub(super) struct Posted {
     pub elements: Vec<MeasuredElement>,
     pub obstacles: Vec<MeasuredObstacle>,
     pub contacts: Vec<PostedContact>,
-    /// Obstacles that move in some stage.
+    /// Number of obstacles that move in some stage.
     pub moving: usize,
     pub stages: Vec<PostedStage>,
 }
@@ -22,7 +22,7 @@ pub(super) struct Posted {
 pub(super) struct PostedNode {
     pub name: String,
     pub place: MeasuredVector,
-    /// Components that a support holds.
+    /// Components that a support fixes.
     pub held: [bool; 3],
 }
 
@@ -30,7 +30,7 @@ pub(super) struct PostedNode {
 pub(super) struct PostedContact {
     pub node: usize,
     pub obstacle: usize,
-    /// The index of its obstacle among the moving ones.
+    /// The index of the obstacle among the moving obstacles, if the obstacle moves.
     pub motion: Option<usize>,
     pub friction: f64,
 }
@@ -45,7 +45,7 @@ pub(super) struct PostedStage {
     pub load_scale: f64,
 }
 
-/// Nodes or moving obstacles, with the vectors that the load factor multiplies.
+/// Indices of nodes or of moving obstacles, with the vectors that the load factor multiplies.
 type PostedLoadPattern = Vec<(usize, MeasuredVector)>;
 
 /// Loads on the structure: forces on the nodes, displacements of the nodes, and displacements of the moving obstacles.
@@ -95,7 +95,7 @@ impl Posted {
 }
 
 impl Posted {
-    /// How a contact's obstacle lies to its node.
+    /// The gap and the frame of the obstacle of a contact at the node of the contact.
     pub fn frame(
         &self,
         contact: &PostedContact,
@@ -135,7 +135,7 @@ impl PostedLoading {
         contact.motion.map_or_else(MeasuredVector::zeros, |place| self.shifts[place])
     }
 
-    /// Sets the sum of the held loads and those of a stage at a load factor.
+    /// Sets the sum of the loads kept from the previous stages and of the loads of a stage at a load factor.
     pub fn set(&mut self, held: &Self, stage: &PostedStage, load: f64) {
         let all = [
             (&mut self.forces, &held.forces, &stage.forces),

@@ -1,26 +1,27 @@
-//! The contacts of the model with a row in an increment: all of them, or those within reach and the requested ones.
+//! The contacts of the model with a row in an increment: all contacts, or the contacts within reach and the requested
+//! contacts.
 
 use crate::model::JobRequest;
 use crate::result::increment::ContactState;
 use std::collections::HashMap;
 
-/// The contacts of the rows of the last increment.
+/// The contacts of the rows in the last increment.
 #[derive(Debug, Clone)]
 pub(super) struct ContactRows {
     /// Node and obstacle of every contact of the model.
     names: Vec<(String, String)>,
     /// The contacts by the names of node and obstacle, in order.
     named: HashMap<String, HashMap<String, Vec<usize>>>,
-    /// For each row its contact.
+    /// The contact of each row.
     contacts: Vec<usize>,
 }
 
 /// The difference from the rows of the previous increment.
 pub(super) enum RowChange {
     None,
-    /// The rows are of other contacts.
+    /// The rows belong to other contacts than before.
     Others,
-    /// The rows are not of the model, or not in its order.
+    /// The rows do not belong to the model, or are not in the order of the model.
     Unknown,
 }
 

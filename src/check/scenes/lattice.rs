@@ -1,6 +1,7 @@
-//! A lattice arch of any size over a floor: chords of bars, posts and diagonals, clamped at both ends, with a load slightly off
-//! the crown. The arch snaps through, and the nodes below the crown land on the floor. The cells are approximately square: the
-//! number of chords grows with the refinement, so that the slenderness does not depend on the number of unknowns.
+//! A lattice arch of any size over a floor: chords of bars, posts and diagonals, fixed at both ends, with a load
+//! slightly off the crown. The arch snaps through, and the nodes below the crown land on the floor. The cells are
+//! approximately square: the number of chords grows with the refinement, so that the slenderness does not depend on the
+//! number of unknowns.
 
 use crate::model::JobRequest;
 use serde_json::{Value, json};
@@ -8,20 +9,20 @@ use serde_json::{Value, json};
 /// A lattice arch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LatticeArch {
-    /// Fields between posts, 2 or more.
+    /// Number of fields between posts, at least 2.
     pub panels: usize,
-    /// Fields between chords, 1 or more.
+    /// Number of fields between chords, at least 1.
     pub layers: usize,
-    /// Nodes of the lower chord, those nearest the crown, that may land on the floor.
+    /// Number of nodes of the lower chord that may land on the floor: those nearest to the crown.
     pub contacts: usize,
     pub friction: f64,
-    /// Height of the crown, half the span being 1.
+    /// Height of the crown; half the span is 1.
     pub rise: f64,
-    /// Distance of the outer chords.
+    /// Distance between the outer chords.
     pub depth: f64,
-    /// Height of the crown above the floor.
+    /// Height of the lower chord at the crown above the floor.
     pub clearance: f64,
-    /// Upper nodes within this distance of the load, along the span, carry a part of the load.
+    /// Nodes of the upper chord within this distance of the load, along the span, carry a part of the load.
     pub spread: f64,
     /// The requested number of increments.
     pub increments: usize,
@@ -50,8 +51,8 @@ impl LatticeArch {
         }
     }
 
-    /// The same lattice with a load over a third of its span, so that it lands flat, and with the given number of contacts, all
-    /// open at the start.
+    /// The same lattice with a load over 0.3 of the span, so that the arch lands flat, and with the given number of
+    /// contacts, all open at the start.
     pub fn landing(self, contacts: usize) -> Self {
         let contacts = contacts.min(self.panels - 1);
         let outermost = (contacts + 1) as f64 / self.panels as f64;
@@ -59,12 +60,13 @@ impl LatticeArch {
         Self { contacts, clearance, spread: 0.3, ..self }
     }
 
-    /// Free displacement components.
+    /// Number of free displacement components.
     pub fn unknowns(&self) -> usize {
         2 * (self.layers + 1) * (self.panels - 1)
     }
 
-    /// The job request. An increment of a rigid fall of the crown by `1/50` of the rise is one step.
+    /// The job request. With `n` unknowns the first and longest step is `sqrt(0.2 n)/50` of the rise: the order of
+    /// magnitude of the norm of the displacements when the crown falls by `1/50` of the rise.
     pub fn request(&self) -> Result<JobRequest, serde_json::Error> {
         let x = |post: usize| 2.0 * post as f64 / self.panels as f64 - 1.0;
         let y = |post: usize| self.rise * (1.0 - x(post).powi(2));

@@ -1,7 +1,8 @@
 //! The built-in scenes: models as JSON, ready to post.
 //!
-//! `pictures` has the pictures that `arcslip solve --plot` draws of some of them, which a test compares. [`exact`] has the paths that
-//! are known in closed form, [`lattice`] and [`of_any_size`] generate scenes of given sizes.
+//! The folder `pictures` contains pictures of some scenes, drawn by `arcslip solve`, `study`, `sweep` and `verify` with
+//! `--plot`; tests compare the pictures of the first three commands. [`exact`] contains the paths that are known in
+//! closed form. [`lattice`] and [`of_any_size`] generate scenes of given sizes.
 
 pub mod exact;
 pub mod lattice;
@@ -12,7 +13,7 @@ pub mod of_any_size;
 pub struct BuiltIn {
     /// Short name, as in `/v1/scenes/{name}`.
     pub name: &'static str,
-    /// A description in a line.
+    /// A description in one line.
     pub shows: &'static str,
     /// The job request as JSON text.
     pub request: &'static str,
@@ -54,7 +55,7 @@ pub const ALL: &[BuiltIn] = &[
     scene!("von-mises-truss", "snap-through without contact"),
 ];
 
-/// The scene of a name.
+/// The scene with a given name.
 pub fn find(name: &str) -> Option<&'static BuiltIn> {
     ALL.iter().find(|scene| scene.name == name)
 }

@@ -7,9 +7,10 @@ fn floor() -> Value {
     json!({"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}})
 }
 
-/// `n` one-bar trusses side by side on a floor, neighbouring tips tied by weaker bars that are unstressed at the start,
-/// every tip pushed along the floor: pins `(3i, 1)`, tips `(3i - a_i, 0)`, `a_i = 1.5 + 0.1 i/(n - 1)`, friction 0.3. The
-/// bars snap one after another. Nodes `pin0`, `tip0`, ...; stage "push" has no end. 1 or more bars; one has `a_0 = 1.5`.
+/// `n` one-bar trusses side by side on a floor. Weaker bars, unstressed at the start, connect neighbouring tips, and a
+/// force pushes every tip along the floor: pins `(3i, 1)`, tips `(3i - a_i, 0)`, `a_i = 1.5 + 0.1 i/(n - 1)`, friction
+/// 0.3. The bars snap one after another. The nodes are `pin0`, `tip0`, ...; the stage "push" has no end. `n` is at
+/// least 1; a single bar has `a_0 = 1.5`.
 pub fn row_of_bars(n: usize) -> Value {
     let bar =
         |a: String, b: String, stiffness: f64| json!({"kind": "bar", "nodes": [a, b], "axial_stiffness": stiffness});
@@ -33,9 +34,10 @@ pub fn row_of_bars(n: usize) -> Value {
     }})
 }
 
-/// A chain of `n` blocks on a floor, a distance 1 apart, joined by springs: stage "weigh" presses each with `weight`, stage
-/// "pull" pulls `block0` and has no end. Block `m` begins to slip at the load `(m + 1) friction weight`, block `m - 1` then
-/// being `friction weight/stiffness` past its rest position; at the last one the whole chain slides.
+/// A chain of `n` blocks on a floor, a distance 1 apart, joined by springs. The stage "weigh" presses each block with
+/// `weight`; the stage "pull" pulls `block0` and has no end. Block `m` begins to slip at the load
+/// `(m + 1) friction weight`; block `m - 1` is then displaced by `friction weight/stiffness`. When the last block
+/// slips, the whole chain slides.
 pub fn slider_chain(n: usize, friction: f64, weight: f64, stiffness: f64) -> Value {
     let (mut nodes, mut weights, mut elements, mut contacts) = (Map::new(), Map::new(), Vec::new(), Vec::new());
     for i in 0..n {

@@ -12,17 +12,18 @@ use crate::result::stop_reason::StopReason;
 use serde::Serialize;
 use std::sync::Arc;
 
-/// The largest error of state (equilibrium, supports, contact, cone, friction) that an increment may have.
+/// The largest error of state (equilibrium, supports, contact, friction, cone, reported values, arc length) that an
+/// increment may have.
 pub const STATE_BAR: f64 = 1e-10;
 
-/// The largest error of the energy balance, over the largest energy so far.
+/// The largest error of the energy balance and of the strain energy, over the largest energy so far.
 pub const ENERGY_BAR: f64 = 1e-6;
 
 pub(crate) const BOTH: &[Method] = &[Method::Auto, Method::Mpec];
 
 pub(crate) const AUTO: &[Method] = &[Method::Auto];
 
-/// Error of a path against the exact solution, dimensionless; infinite where something that has to be there is missing.
+/// Error of a path against the exact solution, dimensionless; infinite if a required point is missing.
 pub(crate) type PathError = Arc<dyn Fn(&[Increment]) -> f64 + Send + Sync>;
 
 /// A request and its known solution.
@@ -33,7 +34,7 @@ pub struct Case {
     /// The member of the family.
     pub name: String,
     pub request: JobRequest,
-    /// The methods by which it is solved.
+    /// The methods that solve the case.
     pub methods: &'static [Method],
     /// The case takes more than a few seconds.
     pub long: bool,
@@ -48,33 +49,34 @@ pub(crate) enum ExpectedEnding {
     Stops(StopReason),
     /// Every stage ends, or the path stops earlier for this reason.
     MayStop(StopReason),
-    /// The request is refused; the first mistake is at this pointer.
+    /// The request is refused, and the first mistake is at this pointer.
     Refused(&'static str),
 }
 
-/// What became of a case.
+/// The result of a case.
 #[derive(Debug, Clone, Serialize)]
 pub struct CaseRow {
     pub family: &'static str,
     pub case: String,
     pub method: Method,
-    /// Against the exact solution, dimensionless; `None` where it is not finite.
+    /// Error against the exact solution, dimensionless; `None` if the error is not finite.
     pub error: Option<f64>,
     pub bar: f64,
-    /// The measure's largest error of state over all increments; `None` where it is not finite.
+    /// The largest error of state over all increments, by the measure; `None` if the error is not finite.
     pub state_error: Option<f64>,
-    /// The measure's largest error of energy balance; `None` where it is not finite.
+    /// The largest error of the energy balance and of the strain energy, by the measure; `None` if the error is not
+    /// finite.
     pub energy_error: Option<f64>,
-    /// Why the path ended, or where the request has the mistake for which it was not taken.
+    /// The reason for the end of the path, or the place of the first mistake in a refused request.
     pub stop_reason: String,
-    /// Increments after the start.
+    /// Number of increments after the start.
     pub increments: u64,
     pub time_s: f64,
     pub pass: bool,
 }
 
 impl CaseRow {
-    /// As in a request.
+    /// The name of the method, as in a request.
     pub fn method_name(&self) -> &'static str {
         match self.method {
             Method::Auto => "auto",
@@ -123,7 +125,7 @@ impl Case {
         self
     }
 
-    /// The case and, if its structure is linear, the same case in steps.
+    /// The case and, if all elements are springs and jumps are allowed, the same case without jumps, in steps.
     pub(crate) fn with_steps(self) -> Vec<Self> {
         let elements = &self.request.model.elements;
         let linear = elements.iter().all(|element| matches!(element, Element::Spring { .. }));
@@ -136,7 +138,7 @@ impl Case {
         vec![self, in_steps]
     }
 
-    /// Solves the case by a method and judges it.
+    /// Solves the case by a method and evaluates the result.
     pub fn solve(&self, method: Method) -> CaseRow {
         let mut request = self.request.clone();
         request.analysis.method = method;

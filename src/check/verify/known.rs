@@ -1,4 +1,4 @@
-//! Scenes with closed forms, for any stiffness, friction and units.
+//! Scenes with solutions in closed form, for any stiffness, friction and units.
 
 use crate::check::verify::compare::{bisected, changes, moved, of_stage, points, relative, worse, worst};
 use crate::check::verify::make::{Make, displacement, load_above, plane_model};
@@ -6,8 +6,9 @@ use crate::model::JobRequest;
 use crate::model::request::Component;
 use crate::result::increment::{Increment, PointKind, Status};
 
-/// Klarbring's node (formulation, section 4): `K = [[a, -b], [-b, c]]` on the floor, pressed by `p`, pulled by `S = s f`.
-/// Stuck to `S = μ p`; slip at `u_x = x`: `r_n = p - b x`, `S = a x + μ r_n`; free from `x = p/b` on: `K u = (S, -p)`.
+/// Klarbring's node (formulation, section 4): `K = [[a, -b], [-b, c]]` on the floor, pressed by `p`, pulled by
+/// `S = s f`. Sticking up to `S = μ p`; slipping at `u_x = x`: `r_n = p - b x`, `S = a x + μ r_n`; free from `x = p/b`
+/// on: `K u = (S, -p)`.
 #[derive(Debug, Clone, Copy)]
 pub struct KlarbringSolution {
     pub along: f64,
@@ -15,14 +16,14 @@ pub struct KlarbringSolution {
     pub across: f64,
     pub friction: f64,
     pub press: f64,
-    /// Force of the pattern that is pulled with.
+    /// Pulling force at a load factor of 1.
     pub pull: f64,
 }
 
 impl KlarbringSolution {
     pub const PUBLISHED: Self = Self { along: 1.0, coupling: 0.8, across: 1.0, friction: 1.5, press: 1.0, pull: 1.0 };
 
-    /// The same with lengths and forces in other units.
+    /// The same node with lengths and forces in other units.
     pub fn in_units(self, length: f64, force: f64) -> Self {
         let stiffness = force / length;
         Self {
@@ -39,17 +40,17 @@ impl KlarbringSolution {
         [[self.along, -self.coupling], [-self.coupling, self.across]]
     }
 
-    /// Load at which the node leaves the floor.
+    /// Pulling force at which the node leaves the floor.
     fn lift(&self) -> f64 {
         self.along * self.press / self.coupling
     }
 
-    /// The largest force that matters.
+    /// The largest of the pressing force and of the pulling forces at both corners.
     fn force(&self) -> f64 {
         (self.friction * self.press).max(self.lift()).max(self.press)
     }
 
-    /// Pulled until twice the larger of both corners' loads.
+    /// The request without the contact; the pull ends at twice the larger of the loads at both corners.
     pub fn make(&self) -> Make {
         let last = 2.0 * (self.friction * self.press).max(self.lift()) / self.pull;
         plane_model()
@@ -64,7 +65,8 @@ impl KlarbringSolution {
         self.make().contact("node", "floor", self.friction).request()
     }
 
-    /// Error of one increment of the pull, over the forces and lengths that matter, at the contacts `among`.
+    /// Error of one increment of the pull, relative to characteristic forces and lengths; `among` are the contacts of
+    /// the node.
     pub fn error_at(&self, increment: &Increment, node: &str, among: std::ops::Range<usize>) -> f64 {
         let (x, y) = (moved(increment, node, 0), moved(increment, node, 1));
         let load = increment.load_factor * self.pull;
@@ -84,7 +86,7 @@ impl KlarbringSolution {
         }
     }
 
-    /// Error of a whole path, its corners' loads included.
+    /// Error of a whole path, including the loads at the corners.
     pub fn error(&self, increments: &[Increment]) -> f64 {
         let states = of_stage(increments, "pull").map(|increment| {
             let contacts = 0..increment.contacts.len();
@@ -104,8 +106,8 @@ impl KlarbringSolution {
     }
 }
 
-/// The one-bar truss (formulation, section 4): pin at (0, h), tip from (-a, 0) on the floor, force `S = s f` along x.
-/// Slipping at x: `S = P (μ h - x)/L`, `P = EA (1 - L/L0)`; the limit points are zeros of `dS/dx`.
+/// The one-bar truss (formulation, section 4): pin at (0, h), tip on the floor, initially at (-a, 0), force `S = s f`
+/// along x. Slipping at x: `S = P (μ h - x)/L`, `P = EA (1 - L/L0)`; the limit points are the zeros of `dS/dx`.
 #[derive(Debug, Clone, Copy)]
 pub struct OneBarSolution {
     pub stiffness: f64,
@@ -141,7 +143,7 @@ impl OneBarSolution {
             .stage("push", &[("tip", [self.pull, 0.0])], None)
     }
 
-    /// `S` at a displacement of the tip; `1/L - 1/L0` without cancellation.
+    /// `S` at a displacement of the tip; `1/L - 1/L0` is computed without cancellation.
     pub fn load(&self, moved: f64) -> f64 {
         let x = moved - self.start;
         let (length, rest) = (x.hypot(self.height), self.start.hypot(self.height));
@@ -157,7 +159,7 @@ impl OneBarSolution {
         -x / length.powi(3) * (self.friction * self.height - x) - by_length
     }
 
-    /// Displacements at the limit points up to the end at twice the start.
+    /// Displacements of the tip at the limit points, up to the end at twice `start`.
     pub fn limits(&self) -> Vec<f64> {
         let cells = 4096;
         let place = |cell: i32| 2.0 * self.start * f64::from(cell) / f64::from(cells);
@@ -168,8 +170,9 @@ impl OneBarSolution {
             .collect()
     }
 
-    /// Error of a path's loads over the larger of the load and a hundred-thousandth of the largest, and of its limit
-    /// points' places, which are known to the root of their loads' accuracy: a hundredth of their error counts.
+    /// The larger of two errors of a path: the error of the loads, over the larger of the exact load and 1e-5 of the
+    /// largest load, and a hundredth of the error of the places of the limit points. The places are accurate only to
+    /// the square root of the accuracy of the loads.
     pub fn error(&self, increments: &[Increment]) -> f64 {
         let limits = self.limits();
         let largest = limits.iter().map(|moved| self.load(*moved).abs()).fold(0.0, f64::max);
@@ -187,9 +190,9 @@ impl OneBarSolution {
     }
 }
 
-/// The von Mises truss: pins at (±1, 0), apex from (0, h), EA = 1, pushed down by `P` to the drop `v`:
-/// `P = 2 y (1/L - 1/L0)`, `y = h - v`, `L² = 1 + y²`. Largest where `cos³ θ = cos α` (angles of the bars with and without
-/// load): `y = sqrt(cos^(-2/3) α - 1)`.
+/// The von Mises truss: pins at (±1, 0), apex initially at (0, h), EA = 1. The force `P` pushes the apex down by `v`:
+/// `P = 2 y (1/L - 1/L0)`, `y = h - v`, `L² = 1 + y²`. The load is largest where `cos³ θ = cos α` (angles of the bars
+/// with and without load): `y = sqrt(cos^(-2/3) α - 1)`.
 #[derive(Debug, Clone, Copy)]
 pub struct VonMisesSolution {
     pub height: f64,
@@ -211,7 +214,7 @@ impl VonMisesSolution {
         displacement("apex", Component::Y, -drop, -1.0)
     }
 
-    /// `P` at a drop, without cancellation.
+    /// `P` at a downward displacement, without cancellation.
     pub fn load(&self, drop: f64) -> f64 {
         let y = self.height - drop;
         let (length, rest) = (y.hypot(1.0), self.height.hypot(1.0));

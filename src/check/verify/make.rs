@@ -10,7 +10,7 @@ use indexmap::IndexMap;
 #[derive(Debug, Clone)]
 pub struct Make(pub JobRequest);
 
-/// Of a stage without forces.
+/// The forces of a stage without forces.
 pub const NO_FORCES: [(&str, [f64; 2]); 0] = [];
 
 /// An empty request in the plane.
@@ -42,7 +42,7 @@ pub fn load_above(bound: f64) -> Option<Until> {
     Some(Until { load_above: Some(bound), ..Until::default() })
 }
 
-/// A displacement at which a stage ends; `sign` is the direction in which it is reached.
+/// A displacement at which a stage ends; `sign` is the sign of the motion towards the bound.
 pub fn displacement(node: &str, component: Component, bound: f64, sign: f64) -> Option<Until> {
     let (above, below) = if sign > 0.0 { (Some(bound), None) } else { (None, Some(bound)) };
     let bound = DisplacementBound { node: node.to_owned(), component, above, below };
@@ -71,7 +71,7 @@ impl Make {
         self
     }
 
-    /// Sets the measure of strain of all bars added so far.
+    /// Sets the strain measure of all bars added so far.
     pub fn strain(mut self, measure: Strain) -> Self {
         for element in &mut self.0.model.elements {
             if let Element::Bar { strain, .. } = element {
@@ -81,7 +81,7 @@ impl Make {
         self
     }
 
-    /// Two nodes, or one and the ground.
+    /// A spring between two nodes, or between one node and the ground.
     pub fn spring(mut self, nodes: &[&str], stiffness: [[f64; 2]; 2]) -> Self {
         self.0.model.elements.push(Element::Spring {
             nodes: nodes.iter().map(|node| (*node).to_owned()).collect(),
@@ -96,7 +96,7 @@ impl Make {
         self
     }
 
-    /// `y >= 0`
+    /// A plane with the free side `y >= 0`.
     pub fn floor(self) -> Self {
         self.plane("floor", &[0.0, 0.0], &[0.0, 1.0])
     }
@@ -123,7 +123,7 @@ impl Make {
         self
     }
 
-    /// Supports that the stage before moves.
+    /// Prescribes the displacement of a supported node in the last stage.
     pub fn driven(mut self, node: &str, displacement: [f64; 2]) -> Self {
         if let Some(stage) = self.0.model.stages.last_mut() {
             stage.displacements.insert(node.to_owned(), displacement.to_vec());

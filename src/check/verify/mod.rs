@@ -1,10 +1,12 @@
-//! Scenes with known solutions; each gives a row with the result, the solution and the tolerance.
+//! Scenes with known solutions. Each case gives a row with its errors, its tolerance and the reason for the end of the
+//! path.
 //!
-//! A [`Case`] is a job request with a solution derived by hand, or the stop reason with which its path has to end. Each of its
-//! increments is judged by [`measure`](crate::check::measure), which shares no code with the solver, and the whole path by the
-//! case itself. `published` holds the built-in scenes and published problems, `check::extreme` families of
-//! cases over decades; `make` builds requests, `compare` compares numbers. Called by `command` and by tests; knows
-//! `model`, `continuation`, `measure` and `scenes`, and neither HTTP nor SQL.
+//! A [`Case`] is a job request with a solution derived by hand, or with the stop reason that must end the path. The
+//! [`measure`](crate::check::measure), which shares no code with the solver, checks each increment, and the case checks
+//! the whole path. `published` contains the built-in scenes and published problems, `known` solutions in closed form,
+//! and `check::extreme` families of cases over decades; `make` builds requests, and `compare` compares numbers.
+//! `command` and tests call this module. The module uses `model`, `continuation`, `measure`, `scenes`, `resources` and
+//! `result`, and neither HTTP nor SQL.
 
 pub(crate) mod case;
 pub(crate) mod compare;

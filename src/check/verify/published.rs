@@ -61,7 +61,7 @@ fn built_in(name: &str) -> Option<JobRequest> {
     model::decode::decode(scenes::find(name)?.request.as_bytes()).ok()
 }
 
-/// Loads of some points against the exact ones.
+/// The largest difference between the loads of points and the exact loads, in order; infinite if the numbers differ.
 fn in_order<'a>(found: impl Iterator<Item = &'a Increment>, exact: &[f64]) -> f64 {
     let found: Vec<&Increment> = found.collect();
     if found.len() != exact.len() {
@@ -78,7 +78,7 @@ fn von_mises(path: &[Increment]) -> f64 {
     worse(worst(loads), in_order(points(path, SmoothLimit), &[largest, -largest]))
 }
 
-/// Drops and loads from the formulation, to the digits that it gives.
+/// Drops and loads of the formulation, to the digits given there.
 fn arch(path: &[Increment]) -> f64 {
     let of = |kind: PointKind, drop: f64, load: f64| {
         let mut found = points(path, kind);
@@ -100,7 +100,7 @@ const fn event(kind: PointKind, load: f64, tips: &'static [f64]) -> PublishedEve
     PublishedEvent { kind, load, tips }
 }
 
-/// From exhaustive enumeration (formulation, section 4).
+/// Events from exhaustive enumeration (formulation, section 4).
 const TWO_BARS: &[PublishedEvent] = &[
     event(SmoothLimit, 0.28211874, &[]),
     event(ContactChange, 0.25042031, &[1.31698808, 1.06627516]),
@@ -145,7 +145,7 @@ fn end_of_four(path: &[Increment]) -> f64 {
     tips.fold((end.load_factor - 0.104818).abs(), worse)
 }
 
-/// Block m + 1 begins to slip at `s = (m + 1) μ W`, with μ = 1/2 and W = 1.
+/// Block m, counted from 0, begins to slip at `s = (m + 1) μ W`, with μ = 1/2 and W = 1.
 fn sliders(path: &[Increment]) -> f64 {
     let loads: Vec<f64> = of_stage(path, "pull")
         .filter(|increment| increment.point.kind != PointKind::Regular && increment.load_factor > 0.0)
@@ -195,8 +195,8 @@ fn drag(path: &[Increment]) -> f64 {
     }))
 }
 
-/// Two bars with Green strain under a held weight, pushed sideways (EA = 1, h = 1/2, L0² = 5/4, `q = p L0³`, p = 0.018):
-/// `x² = h² - y² - q/y`, `s = x (2 - q/y)/L0³`; back at s = 0.
+/// Two bars with Green strain under a constant weight p = 0.018, pushed sideways (EA = 1, h = 1/2, L0² = 5/4,
+/// `q = p L0³`): `x² = h² - y² - q/y`, `s = x (2 - q/y)/L0³`. The path returns to s = 0.
 fn closed_loop(path: &[Increment]) -> f64 {
     let cube = 1.25_f64.powf(1.5);
     let q = 0.018 * cube;
@@ -214,7 +214,7 @@ fn limit_points(count: u64) -> Option<Until> {
 
 const SPACE: [Component; 3] = [Component::X, Component::Y, Component::Z];
 
-/// The 12-bar space truss (Green strain, EA = 1); loads to the digits published.
+/// The 12-bar space truss (Green strain, EA = 1). The exact limit loads have the published digits.
 fn twelve_bars() -> JobRequest {
     let nodes = [
         [-1.697, -1.0, 0.0],
@@ -255,8 +255,9 @@ fn star_dome() -> JobRequest {
     make.strain(Strain::Green).stage("load", &[("apex", [0.0, 0.0, -1.0])], limit_points(4)).request()
 }
 
-/// First limit load and drop by minimising the two-parameter symmetric problem in 20-digit arithmetic, double bifurcation
-/// by bisection on the tangent's smallest eigenvalue (see `tests/solver/published.rs`).
+/// The first limit load and drop result from the minimisation of the two-parameter symmetric problem in 20-digit
+/// arithmetic, the double bifurcation from bisection on the smallest eigenvalue of the tangent stiffness (see
+/// `tests/solver/published.rs`).
 fn dome(path: &[Increment]) -> f64 {
     let at = |point: Option<&Increment>, load: f64, drop: f64| {
         let Some(point) = point else { return f64::INFINITY };
@@ -265,7 +266,7 @@ fn dome(path: &[Increment]) -> f64 {
     let first = points(path, SmoothLimit).next();
     let minimum = points(path, SmoothLimit).nth(1).map_or(u64::MAX, |point| point.index);
     let double = points(path, SmoothBifurcation).find(|point| point.index > minimum);
-    // The drop at a limit point is known to the digits given.
+    // The drop at a limit point is known only to the digits given.
     let limit = at(first, 3.155799708e-4, 0.76855727);
     worse(0.1 * limit, at(double, 76.5387152565e-4, 9.0965011515))
 }

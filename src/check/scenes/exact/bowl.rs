@@ -1,6 +1,8 @@
-//! A node at the bottom of a bowl, held by a spring `k` in all directions, pressed down and then pushed sideways.
+//! A node at the bottom of a bowl, pressed down and then pushed sideways. A spring with the same stiffness `k` in all
+//! directions connects the node to the ground.
 //!
-//! It slides up where the force on it leans from the normal by the angle of friction: at the angle `φ` from the bottom
+//! The node slips upwards when the sum of load and spring force is inclined to the normal by the angle of friction. At
+//! the angle `φ` from the bottom
 //!
 //! ```text
 //! s q = k R sin φ + (P + k R (1 - cos φ)) tan(φ + arctan μ)
@@ -15,13 +17,13 @@ use crate::model::request::{Obstacle, Side};
 use crate::result::increment::PointKind;
 use std::f64::consts::FRAC_PI_2;
 
-/// The load at an angle from the bottom (radians), with radius, press and push all 1.
+/// The load at an angle from the bottom (radians), if radius, press and push are 1.
 pub fn bowl_load(stiffness: f64, friction: f64, angle: f64) -> f64 {
     let (sine, cosine) = angle.sin_cos();
     stiffness * sine + (1.0 + stiffness * (1.0 - cosine)) * (angle + friction.atan()).tan()
 }
 
-/// The scene in any size.
+/// A scene of this family, of any size.
 #[derive(Debug, Clone)]
 pub struct Bowl {
     /// `k R/P`
@@ -29,7 +31,7 @@ pub struct Bowl {
     friction: f64,
     radius: f64,
     pressed_to: f64,
-    /// Press over the force of the push for a load factor of 1.
+    /// The force at the end of the press, over the force of the push at a load factor of 1.
     scale: f64,
     stages: [String; 2],
 }

@@ -8,29 +8,29 @@ use crate::result::increment::PointKind;
 /// A point of a path, in the user's units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurvePlace {
-    /// `dimension` components a node, in the model's order (length).
+    /// `dimension` components for each node, in the order of the model (length).
     pub displacements: Vec<f64>,
     pub load: f64,
 }
 
-/// The extent of unbounded branches.
+/// The extent to which unbounded branches are given.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
-    /// Largest load factor in size.
+    /// Largest absolute value of the load factor.
     pub load: f64,
-    /// Largest displacement component in size (length).
+    /// Largest absolute value of a displacement component (length).
     pub displacement: f64,
 }
 
-/// Negative before the bound, 0 at it.
+/// A function that is negative before a bound and 0 at the bound.
 type Bound = Box<dyn Fn(&CurvePlace) -> f64>;
 type CurveFunction = Box<dyn Fn(f64) -> CurvePlace + Send + Sync>;
 
-/// A smooth stretch of a path.
+/// A smooth part of a path.
 pub struct Piece {
     /// The parameter where the piece begins.
     pub from: f64,
-    /// The parameter where it ends; less than `from` if the parameter decreases.
+    /// The parameter where the piece ends; less than `from` if the parameter decreases.
     pub to: f64,
     at: CurveFunction,
     /// The event at the end of the piece, if there is one.
@@ -43,7 +43,7 @@ pub struct CurveStage {
     pub pieces: Vec<Piece>,
 }
 
-/// Parts of a stage in which a bound is searched for; a piece has at least four.
+/// Number of intervals of a stage in which a bound is searched for; a piece has at least four.
 const PARTS: usize = 1000;
 
 impl Piece {
@@ -66,7 +66,7 @@ impl Piece {
         self.from + part * (self.to - self.from)
     }
 
-    /// The parameter at which a quantity that is negative at first becomes zero.
+    /// The first parameter at which a quantity that is negative at the start becomes zero.
     fn reaches(&self, quantity: impl Fn(&CurvePlace) -> f64, parts: usize) -> Option<f64> {
         let value = |part: f64| quantity(&self.at(self.parameter(part)));
         let mut before = 0.0;
@@ -82,7 +82,8 @@ impl Piece {
 }
 
 impl CurveStage {
-    /// A curve cut into pieces where its load turns: `slope` is the load's derivative by the parameter.
+    /// Divides a curve into pieces at the limit points of its load; `slope` is the derivative of the load with respect
+    /// to the parameter.
     pub(super) fn turning(
         name: &str,
         (from, to): (f64, f64),
@@ -99,7 +100,7 @@ impl CurveStage {
         Self { name: name.to_owned(), pieces }
     }
 
-    /// The event at the end of the stage.
+    /// Sets the event at the end of the stage.
     pub(super) fn ending(mut self, kind: PointKind) -> Self {
         if let Some(last) = self.pieces.last_mut() {
             last.ends_with = Some(kind);
@@ -107,7 +108,7 @@ impl CurveStage {
         self
     }
 
-    /// Ends the stage where the first of its bounds is reached.
+    /// Ends the stage at the first bound that the curve reaches.
     pub(super) fn end_at(&mut self, model: &Model, stage: &request::Stage) {
         let Some(until) = &stage.until else { return };
         let mut bounds: Vec<Bound> = Vec::new();

@@ -1,7 +1,8 @@
-//! The one-bar truss over a hump: the tip goes over a circle, the pin stands above its middle.
+//! The one-bar truss over a hump: the tip slips over a circle, and the pin is above the centre of the circle.
 //!
-//! Pin at `(0, H)`, tip on the circle of radius 1 about the origin at the angle `φ` from the top, positive to the right;
-//! EA = 1. With the normal `(sin φ, cos φ)` and the tangent `(cos φ, -sin φ)`:
+//! The pin is at `(0, H)`. The tip is on the circle of radius 1 about the origin, at the angle `φ` from the top,
+//! positive to the right; EA = 1. With the normal `(sin φ, cos φ)` and the tangent `(cos φ, -sin φ)`, equilibrium of
+//! the slipping tip requires
 //!
 //! ```text
 //! P (1 - H cos φ)/L + s sin φ + r_n = 0,     P H sin φ/L + s cos φ = μ r_n
@@ -14,7 +15,7 @@ use crate::model::Model;
 use crate::model::request::{Obstacle, Side, Strain};
 use crate::result::increment::PointKind;
 
-/// The truss with radius, EA and the push of a load factor of 1 all 1.
+/// The truss, where the radius, EA and the push at a load factor of 1 are all 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hump {
     pub friction: f64,
@@ -25,7 +26,7 @@ pub struct Hump {
 }
 
 impl Hump {
-    /// As in the scene `hump`.
+    /// The values of the scene `hump`.
     pub const BUILT_IN: Self = Self { friction: 0.3, pin: 2.5, start: -0.9 };
 
     fn length(&self, angle: f64) -> f64 {
@@ -48,7 +49,7 @@ impl Hump {
         self.compression_by_length(angle) * (self.pin * cosine - 1.0) - self.load(angle) * sine
     }
 
-    /// The load's derivative by the angle.
+    /// The derivative of the load with respect to the angle.
     fn slope(&self, angle: f64) -> f64 {
         let (sine, cosine) = angle.sin_cos();
         let (pin, friction, length) = (self.pin, self.friction, self.length(angle));
@@ -60,17 +61,17 @@ impl Hump {
     }
 }
 
-/// Parts of the arc at which the tip is looked at for being pressed.
+/// Number of intervals of the arc. At each point between two intervals, the reaction must press on the tip.
 const PARTS: u32 = 1000;
-/// The tip may be this far from the circle, over its radius: what rounding of its place leaves.
+/// Tolerance for the distance of the tip from the circle, over the radius: the rounding error of the coordinates.
 const ON_CIRCLE: f64 = 1e-12;
 
-/// The scene in any size.
+/// A scene of this family, of any size.
 #[derive(Debug, Clone)]
 pub struct OverHump {
     pub hump: Hump,
     radius: f64,
-    /// EA over the force of a load factor of 1.
+    /// EA over the force at a load factor of 1.
     scale: f64,
     stage: String,
     tip: usize,

@@ -1,8 +1,10 @@
 //! Klarbring's node (A. Klarbring, *Examples of non-uniqueness and non-existence of solutions to quasistatic contact
-//! problems with friction*, Ing.-Arch. 60 (1990) 529): a node on a floor, held by `K = [[a, -b], [-b, c]]`, pressed by `p` and pulled by `s q`.
+//! problems with friction*, Ing.-Arch. 60 (1990) 529): a node on a floor with the stiffness `K = [[a, -b], [-b, c]]`,
+//! pressed by `p` and pulled by `s q`.
 //!
-//! Stuck up to `s q = μ p`; slipping at `u_x = x` with `r_n = p - b x` and `s q = a x + μ (p - b x)`, against the load
-//! where `μ > a/b`; free from `x = p/b` on, `u = K⁻¹ (s q e_x - p e_y)`.
+//! The contact sticks up to `s q = μ p`. Then the contact slips at `u_x = x` with `r_n = p - b x` and
+//! `s q = a x + μ (p - b x)`; the load falls if `μ > a/b`. From `x = p/b` on, the contact is free and
+//! `u = K⁻¹ (s q e_x - p e_y)`.
 
 use crate::check::scenes::exact::curve::{CurvePlace, CurveStage, Piece, Reach};
 use crate::check::scenes::exact::pattern;
@@ -16,7 +18,7 @@ pub struct KlarbringScene {
     /// `a`, `b`, `c`.
     pub stiffness: [f64; 3],
     pub friction: f64,
-    /// Force of the first stage at a load factor of 1, downwards.
+    /// Force of the first stage at a load factor of 1, positive downwards.
     press: f64,
     /// Load factor at which the first stage ends.
     pressed_to: f64,
@@ -35,7 +37,7 @@ impl KlarbringScene {
         };
         let (a, b, c) = (stiffness[0][0], -stiffness[0][1], stiffness[1][1]);
         let forces = *side == 0.0 && *down < 0.0 && *along > 0.0 && *up == 0.0;
-        // Pulled by the spring's coupling off the floor; with a = μ b the slip's load would not change.
+        // During slip the coupling b lifts the node off the floor. With a = μ b the load would be constant during slip.
         let leaves = b > 0.0 && a > 0.0 && a * c > b * b && a != contact.friction * b && stiffness[1][0] == -b;
         let fits = pattern::is_floor_at(obstacle, &model.nodes[node]) && forces && leaves && contact.friction > 0.0;
         fits.then(|| Self {
@@ -66,7 +68,7 @@ impl ExactSolution for KlarbringScene {
         let leaves = held / b;
         let corner = if a < friction * b { PointKind::NonsmoothLimit } else { PointKind::ContactChange };
         let left_at = a * leaves / pull;
-        // Far enough in both: x = (c s q - b p)/(a c - b²).
+        // Large enough for both extents: x = (c s q - b p)/(a c - b²).
         let far = reach.load.max((reach.displacement * (a * c - b * b) + b * held) / (c * pull)).max(left_at);
         let free = move |load: f64| {
             let determinant = a * c - b * b;

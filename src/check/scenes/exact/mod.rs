@@ -1,20 +1,21 @@
 //! Exact solutions of scenes, as curves.
 //!
-//! [`recognise`] recognises models of families whose whole path is known in closed form, for any sizes and units; a solution
-//! then gives the path stage by stage, in smooth pieces between events. Nothing here uses the solver. The formulas are derived in each family's file.
+//! [`recognise`] recognises models of families whose path is known in closed form, for any sizes and units. A solution
+//! gives the path stage by stage, in smooth pieces between events. No solution uses the solver. The file of each family
+//! derives the formulas.
 //!
-//! | family | scene | of which the path is known |
+//! | family | scenes | known part of the path |
 //! |---|---|---|
-//! | [`one_bar`] | `one-bar-truss` | up to where the bar is unstressed again |
-//! | [`klarbring`] | `klarbring` | all |
-//! | [`slider_chain`] | `slider-chain` | up to where all blocks slide |
-//! | [`tractrix`] | `curving-slip` | while the bar is compressed |
+//! | [`one_bar`] | `one-bar-truss`, `one-bar-truss-rough` | up to the point where the bar is unstressed again |
+//! | [`klarbring`] | `klarbring` | the whole path |
+//! | [`slider_chain`] | `slider-chain` | up to the load at which all blocks slide |
+//! | [`tractrix`] | `curving-slip` | while the bar is compressed, at most up to `w = c` |
 //! | [`hump`] | `hump` | while the bar is compressed |
-//! | [`bowl`] | `bowl` | up to where the load grows without bound |
-//! | [`turning_drag`] | `turning-drag` | all |
-//! | [`von_mises`] | `von-mises-truss` | all |
+//! | [`bowl`] | `bowl` | up to the angle at which the load grows without bound |
+//! | [`turning_drag`] | `turning-drag` | the whole path |
+//! | [`von_mises`] | `von-mises-truss` | the whole path |
 //!
-//! Where a stage's `until` names a load or a displacement, the curve ends there.
+//! If the `until` of a stage gives a load or a displacement, the curve ends there.
 
 pub mod bowl;
 pub mod curve;
@@ -52,8 +53,8 @@ impl Exact {
         self.solution.formula()
     }
 
-    /// The path's stages, each ended where its `until` names a load or a displacement; unbounded branches go as far as
-    /// `reach`.
+    /// The stages of the path. Each stage ends at the load or the displacement of its `until`; unbounded branches
+    /// extend to `reach`.
     pub fn stages(&self, reach: Reach) -> Vec<CurveStage> {
         let mut stages = self.solution.stages(reach);
         for (stage, loads) in stages.iter_mut().zip(&self.model.stages) {
@@ -65,8 +66,8 @@ impl Exact {
 
 type Recognise = fn(&Model) -> Option<Box<dyn ExactSolution>>;
 
-/// Whether the request's path is known in closed form: by its model, and by its selecting the direction of largest
-/// dissipation where there are several, as the formulas do.
+/// The exact solution of a request whose path is known in closed form. The model must belong to a family, and the
+/// request must select the direction of largest dissipation where there are several directions, as the formulas do.
 pub fn recognise(request: &JobRequest) -> Option<Exact> {
     if request.analysis.selection != Selection::MaxDissipation {
         return None;

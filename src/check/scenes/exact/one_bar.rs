@@ -1,13 +1,15 @@
-//! The one-bar truss: a bar from a pin down to a tip that is pushed along a floor towards the pin's foot and past it.
+//! The one-bar truss: a bar from a pin down to a tip. The tip is pushed along a floor towards the foot of the pin and
+//! past the foot.
 //!
-//! Pin at height `h` over the floor, tip at `x` from the pin's foot, at `-a` at first; `L² = x² + h²`, compression
-//! `P = EA (1 - L/L0)`. Equilibrium of the tip that slips gives `r_n = P h/L` and
+//! The pin is at the height `h` above the floor. The tip is at `x` from the foot of the pin, initially at `-a`;
+//! `L² = x² + h²`, compression `P = EA (1 - L/L0)`. Equilibrium of the slipping tip gives `r_n = P h/L` and
 //!
 //! ```text
 //! s f = P (μ h - x)/L
 //! ```
 //!
-//! between `x = -a` and `a`, where the bar is unstressed, nothing presses the tip and the path ends in a mechanism.
+//! between `x = -a` and `x = a`. At `x = a` the bar is unstressed, the reaction is zero, and the path ends in a
+//! mechanism.
 
 use crate::check::scenes::exact::curve::{CurvePlace, CurveStage, Reach};
 use crate::check::scenes::exact::pattern;
@@ -16,17 +18,17 @@ use crate::model::Model;
 use crate::model::request::Strain;
 use crate::result::increment::PointKind;
 
-/// The truss, mirrored if need be so that it goes to +x.
+/// The truss, mirrored if necessary so that the tip moves to +x.
 #[derive(Debug, Clone)]
 pub struct OneBarScene {
     pub axial_stiffness: f64,
     pub height: f64,
-    /// From the tip to the pin's foot at the start.
+    /// Distance from the tip to the foot of the pin at the start.
     pub offset: f64,
     pub friction: f64,
-    /// Size of the force for a load factor of 1.
+    /// Absolute value of the force at a load factor of 1.
     pub force: f64,
-    /// 1, or -1 for a truss that goes to -x.
+    /// 1, or -1 for a truss whose tip moves to -x.
     side: f64,
     stage: String,
     freedoms: usize,
@@ -57,24 +59,24 @@ impl OneBarScene {
         })
     }
 
-    /// The load factor while the tip slips at `x`.
+    /// The load factor of a tip that slips at `x`.
     pub fn load(&self, x: f64) -> f64 {
         self.compression_by_length(x) * (self.friction * self.height - x) / self.force
     }
 
-    /// `P/L`, without cancellation where the bar is hardly strained.
+    /// `P/L`, without cancellation for small strains.
     fn compression_by_length(&self, x: f64) -> f64 {
         let (length, rest) = (x.hypot(self.height), self.offset.hypot(self.height));
         self.axial_stiffness * (self.offset - x) * (self.offset + x) / ((length + rest) * length * rest)
     }
 
-    /// `L³ f/EA` times the load's derivative by `x`: `L³/L0 - h² - μ h x`.
+    /// The derivative of the load with respect to `x`, times `L³ f/EA`: `L³/L0 - h² - μ h x`.
     fn slope(&self, x: f64) -> f64 {
         let (length, rest) = (x.hypot(self.height), self.offset.hypot(self.height));
         length.powi(3) / rest - self.height * self.height - self.friction * self.height * x
     }
 
-    /// Where the load turns, in order: place `x` and load factor.
+    /// The limit points in order: place `x` and load factor.
     pub fn limits(&self) -> Vec<(f64, f64)> {
         let places = crate::check::scenes::exact::zeros::zeros(|x| self.slope(x), -self.offset, self.offset);
         places.into_iter().map(|x| (x, self.load(x))).collect()

@@ -1,7 +1,8 @@
-//! A chain of blocks on a floor, joined by springs along a line, pressed by their weights and pulled at the first.
+//! A chain of blocks on a floor, joined by springs along a line. The weights press the blocks, and a force pulls the
+//! first block.
 //!
-//! With springs `k_j` from block `j` to `j + 1` and `q_j = Σ_{i <= j} μ_i W_i`: block `m` begins to slip at `s p = q_m`,
-//! and until the last one does `u_j - u_{j+1} = max(0, s p - q_j)/k_j`.
+//! With springs `k_j` from block `j` to block `j + 1` and `q_j = Σ_{i <= j} μ_i W_i`, block `m` begins to slip at
+//! `s p = q_m`. Until the last block slips, `u_j - u_{j+1} = max(0, s p - q_j)/k_j`.
 
 use crate::check::scenes::exact::curve::{CurvePlace, CurveStage, Piece, Reach};
 use crate::check::scenes::exact::pattern;
@@ -13,14 +14,14 @@ use crate::result::increment::PointKind;
 /// The chain and its two stages.
 #[derive(Debug, Clone)]
 pub struct SliderChain {
-    /// `k_j`, one less than blocks.
+    /// `k_j`, one fewer than the blocks.
     stiffness: Vec<f64>,
-    /// `q_j`: the force at which each block begins to slip.
+    /// `q_j`: the force at which block `j` begins to slip.
     holds: Vec<f64>,
     pull: f64,
     pressed_to: f64,
     stages: [String; 2],
-    /// Where each block's x stands among the displacements.
+    /// The index of the x displacement of each block.
     along: Vec<usize>,
     freedoms: usize,
 }

@@ -1,4 +1,4 @@
-//! Each family knows its built-in scene, and no other scene is taken for one.
+//! The built-in scenes of each family are recognised, and no other scene is recognised.
 
 use crate::check::scenes;
 use crate::check::scenes::exact::{CurvePlace, Exact, Reach, recognise};
@@ -71,7 +71,7 @@ fn another_selection_or_anything_else_in_the_model_has_no_exact_path() {
     }
 }
 
-/// Limit points of the formulation's table.
+/// The limit points of the table in the formulation.
 #[test]
 fn the_one_bar_truss_turns_where_it_is_known_to() {
     let found = events(&exact("one-bar-truss"), 0);
@@ -116,7 +116,7 @@ fn pieces_join_and_events_are_at_their_places() {
     }
 }
 
-/// The closed form of the published problems: `P = 2 EA (1 - cos^(2/3) α)^(3/2)` and, with Green's strain,
+/// Limit loads of the published problems in closed form: `P = 2 EA (1 - cos^(2/3) α)^(3/2)` and, with Green strain,
 /// `2 EA (h/L0)³/(3√3)`.
 #[test]
 fn the_von_mises_truss_turns_where_it_is_known_to() {

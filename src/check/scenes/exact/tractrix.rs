@@ -1,8 +1,10 @@
-//! Slip that curves: the tip of a bar, pushed along a floor in space while the bar pushes it sideways, draws a tractrix.
+//! Slip along a curve: the tip of a bar is pushed along a floor in space, while the bar pushes the tip sideways. The
+//! tip moves along a tractrix.
 //!
-//! Pin at `(0, b, h)`, tip from `(x0, 0, 0)`, pushed along +x by `s f`. With the bar's horizontal force `(F_x, F_y)` slip
-//! obeys `(s f + F_x)² + F_y² = (μ r_n)²` and runs along `(s f + F_x, F_y)`. The force cancels from the track: with
-//! `c = μ h` and `w = b - y` slip runs along `(sqrt(c² - w²), -w)/c`, so that
+//! The pin is at `(0, b, h)`. The tip starts at `(x0, 0, 0)` and is pushed along +x by `s f`. With the horizontal force
+//! `(F_x, F_y)` of the bar, slip satisfies `(s f + F_x)² + F_y² = (μ r_n)²`, and the direction of slip is
+//! `(s f + F_x, F_y)`. The force cancels from the equation of the track: with `c = μ h` and `w = b - y` the direction
+//! of slip is `(sqrt(c² - w²), -w)/c`, so that
 //!
 //! ```text
 //! x - x0 = [sqrt(c² - w²) - c arcosh(c/w)] from b to w,     s f = EA (1/L - 1/L0) (sqrt(c² - w²) - x)
@@ -15,7 +17,7 @@ use crate::model::Model;
 use crate::model::request::Strain;
 use crate::result::increment::PointKind;
 
-/// The track and the forces along it, with EA and the push of a load factor of 1 both 1.
+/// The track and the forces along the track, where EA and the push at a load factor of 1 are both 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tractrix {
     pub friction: f64,
@@ -28,7 +30,7 @@ pub struct Tractrix {
 }
 
 impl Tractrix {
-    /// As in the scene `curving-slip`.
+    /// The values of the scene `curving-slip`.
     pub const BUILT_IN: Self = Self { friction: 0.8, offset: 0.1, height: 1.0, start: -1.4 };
 
     fn cone(&self) -> f64 {
@@ -39,7 +41,7 @@ impl Tractrix {
         self.start.hypot(self.offset).hypot(self.height)
     }
 
-    /// `x` of the track at `w`, with differences of the two ends taken so that nothing cancels near the start.
+    /// `x` of the track at `w`, computed from differences between both ends to avoid cancellation near the start.
     pub fn track(&self, w: f64) -> f64 {
         let (c, b) = (self.cone(), self.offset);
         let leg = |w: f64| ((c - w) * (c + w)).sqrt();
@@ -47,7 +49,8 @@ impl Tractrix {
         self.start + change + c * (((w - b) / b).ln_1p() + ((leg(b) - leg(w)) / (c + leg(w))).ln_1p())
     }
 
-    /// Distance of a place from the track, to first order in it: the track's slope there is `dw/dx = w/sqrt(c² - w²)`.
+    /// Distance of a point from the track, to first order in the distance. The slope of the track at the point is
+    /// `dw/dx = w/sqrt(c² - w²)`.
     pub fn distance(&self, x: f64, y: f64) -> f64 {
         let w = self.offset - y;
         (x - self.track(w)).abs() * w / self.cone()
@@ -59,7 +62,7 @@ impl Tractrix {
         1.0 / length - 1.0 / self.rest_length()
     }
 
-    /// Load of a tip that slides at this place: `s = -F_x + sqrt((μ r_n)² - F_y²)`.
+    /// Load of a tip that slips at this point: `s = -F_x + sqrt((μ r_n)² - F_y²)`.
     pub fn load(&self, x: f64, y: f64) -> f64 {
         let (c, w) = (self.cone(), self.offset - y);
         self.compression_by_length(x, y) * (((c - w) * (c + w)).sqrt() - x)
@@ -69,14 +72,14 @@ impl Tractrix {
         self.compression_by_length(x, y) * self.height
     }
 
-    /// Traction in space, `-μ r_n` along the slip.
+    /// Traction along x and y: `μ r_n` against the slip.
     pub fn traction(&self, x: f64, y: f64) -> [f64; 2] {
         let (c, w) = (self.cone(), self.offset - y);
         let size = self.compression_by_length(x, y);
         [-size * ((c - w) * (c + w)).sqrt(), size * w]
     }
 
-    /// The load's derivative by `w` along the track.
+    /// The derivative of the load with respect to `w` along the track.
     fn slope(&self, w: f64) -> f64 {
         let (c, x) = (self.cone(), self.track(w));
         let leg = ((c - w) * (c + w)).sqrt();
@@ -87,13 +90,13 @@ impl Tractrix {
     }
 }
 
-/// The scene in any size, mirrored as it stands.
+/// A scene of this family, of any size, possibly mirrored.
 #[derive(Debug, Clone)]
 pub struct CurvingSlip {
     pub track: Tractrix,
-    /// EA over the force of a load factor of 1.
+    /// EA over the force at a load factor of 1.
     scale: f64,
-    /// Of x and y.
+    /// 1, or -1 if mirrored, for x and y.
     sides: [f64; 2],
     stage: String,
     tip: usize,

@@ -1,7 +1,9 @@
-//! A block on springs, pressed on a floor that drags it one way until it slips and then another way.
+//! A block on springs, pressed on a floor that drags the block in one direction until the block slips, and then in
+//! another direction.
 //!
-//! While the block slips its spring's force stays `μ P = k ρ` against the slip `u̇ - e = -λ u`: `u` turns towards the
-//! drag's direction `e`, and for the angle `ψ` between them `ρ ψ̇ = -sin ψ`, so that after a drag of `d`
+//! While the block slips, the friction force opposes the slip, balances the spring force and has the constant size
+//! `μ P = k ρ`. The slip is therefore `u̇ - e = -λ u`, where `e` is the direction of the drag, and `u` turns towards
+//! `e`. The angle `ψ` between `u` and `e` satisfies `ρ ψ̇ = -sin ψ`, so that after a drag of `d`,
 //! `tan(ψ/2) = tan(ψ0/2) exp(-d/ρ)`.
 
 use crate::check::scenes::exact::curve::{CurvePlace, CurveStage, Piece, Reach};
@@ -10,21 +12,21 @@ use crate::check::scenes::exact::solution::ExactSolution;
 use crate::model::Model;
 use crate::result::increment::PointKind;
 
-/// Displacement of a block that slips at `(ρ, 0)` when the floor turns, after a drag of `d` along
-/// `(cos turn, sin turn)`.
+/// Displacement of a block that slips at `(ρ, 0)` when the floor changes its direction to `(cos turn, sin turn)`, after
+/// a further drag of `d`.
 pub fn turning_drag(radius: f64, turn: f64, drag: f64) -> [f64; 2] {
     let between = 2.0 * ((0.5 * turn).tan() * (-drag / radius).exp()).atan();
     let (sine, cosine) = (turn - between).sin_cos();
     [radius * cosine, radius * sine]
 }
 
-/// The scene in any size.
+/// A scene of this family, of any size.
 #[derive(Debug, Clone)]
 pub struct TurningDrag {
     /// `ρ`
     radius: f64,
     pressed_to: f64,
-    /// Drag of a load factor of 1 and its angle from the x axis (radians), of both drags.
+    /// Length at a load factor of 1 and angle from the x axis (radians) of both drags.
     drags: [(f64, f64); 2],
     /// Load factor at which the first drag ends.
     dragged_to: f64,

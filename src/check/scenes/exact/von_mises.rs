@@ -1,6 +1,6 @@
-//! The von Mises truss: two equal bars, an apex at `±b` from both supports and `h` above them, pushed down.
+//! The von Mises truss: two equal bars from supports at `±b` to an apex at the height `h`, which is pushed down.
 //!
-//! With `y = h - v` after a travel `v`, `L² = b² + y²`, `λ = L/L0` and a bar's force `N(λ)`: `s p = -2 N y/L`.
+//! After the displacement `v`, with `y = h - v`, `L² = b² + y²`, `λ = L/L0` and the bar force `N(λ)`: `s p = -2 N y/L`.
 
 use crate::check::scenes::exact::curve::{CurvePlace, CurveStage, Reach};
 use crate::check::scenes::exact::pattern;
@@ -8,14 +8,14 @@ use crate::check::scenes::exact::solution::ExactSolution;
 use crate::model::Model;
 use crate::model::request::{Element, Strain};
 
-/// The truss.
+/// A von Mises truss.
 #[derive(Debug, Clone)]
 pub struct VonMisesScene {
     pub axial_stiffness: f64,
     pub half_span: f64,
     pub height: f64,
     pub strain: Strain,
-    /// Size of the force for a load factor of 1.
+    /// Absolute value of the force at a load factor of 1.
     pub force: f64,
     stage: String,
     freedoms: usize,
@@ -69,7 +69,7 @@ impl VonMisesScene {
         travel * (travel - 2.0 * self.height) / ((length + rest) * rest)
     }
 
-    /// `N/EA` and its derivative by `λ`.
+    /// `N/EA` and its derivative with respect to `λ`.
     fn response(&self, elongation: f64) -> (f64, f64) {
         let stretch = 1.0 + elongation;
         match self.strain {
@@ -82,14 +82,14 @@ impl VonMisesScene {
         }
     }
 
-    /// The load factor at a travel of the apex.
+    /// The load factor at a downward displacement of the apex.
     pub fn load(&self, travel: f64) -> f64 {
         let y = self.height - travel;
         let (force, _) = self.response(self.elongation(travel));
         -2.0 * self.axial_stiffness * force * y / self.half_span.hypot(y) / self.force
     }
 
-    /// The load factor's derivative by the travel.
+    /// The derivative of the load factor with respect to the displacement.
     fn slope(&self, travel: f64) -> f64 {
         let y = self.height - travel;
         let (length, rest) = (self.half_span.hypot(y), self.half_span.hypot(self.height));
@@ -115,7 +115,7 @@ impl ExactSolution for VonMisesScene {
             displacements[truss.apex + 1] = -travel;
             CurvePlace { displacements, load: truss.load(travel) }
         };
-        // Past both limits in any case.
+        // Beyond both limit points in any case.
         let far = (2.0 * reach.displacement).max(3.0 * self.height);
         vec![CurveStage::turning(&self.stage, (0.0, far), |travel| self.slope(travel), at)]
     }

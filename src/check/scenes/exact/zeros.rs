@@ -1,11 +1,11 @@
 //! Zeros of functions of one variable.
 
-/// Parts of the interval in which changes of sign are searched for.
+/// Number of intervals in which changes of sign are searched for.
 const PARTS: u32 = 2000;
-/// Number of bisections, more than a number has bits.
+/// Largest number of bisections, more than the bits of a number.
 const HALVINGS: u32 = 200;
 
-/// A zero between two places of different sign, to machine precision; `to` if the signs are equal.
+/// A zero between two points with values of different sign, to machine precision; `to` if the signs are equal.
 pub(super) fn zero(function: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
     let negative = function(from) < 0.0;
     let (mut from, mut to) = (from, to);
@@ -19,7 +19,7 @@ pub(super) fn zero(function: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
     to
 }
 
-/// Changes of sign between two places, excluding the ends, in order.
+/// The changes of sign between two points, in order, without those in the first and the last interval.
 pub(super) fn zeros(function: impl Fn(f64) -> f64, from: f64, to: f64) -> Vec<f64> {
     let place = |part: u32| from + (to - from) * f64::from(part) / f64::from(PARTS);
     let mut found = Vec::new();
