@@ -121,7 +121,7 @@ async fn a_text_of_the_readers_own_is_named_so_and_brought_back_where_another_ta
     browser.until(&format!("{TEXT} === '{{\"model\": 2}}' && {chosen} === 'a text of your own'")).await;
     // There and back leaves a text as it was written.
     browser.put("#scene", "klarbring").await;
-    browser.until(&format!("{chosen} === 'klarbring'")).await;
+    browser.until(&format!("{TEXT}.includes(\"Klarbring's node\") && {chosen} === 'klarbring'")).await;
     let before = browser.ask(TEXT).await;
     browser.put("#kind", "sweep").await;
     browser.until(&format!("{TEXT}.includes('\"sweep\"')")).await;
