@@ -278,7 +278,7 @@ fn scene(method: &str, extra: usize) -> Scene {
         friction: CoulombFriction::new(FRICTION),
         sliding: Sliding::Line { across: [0.0, 0.0, 1.0] },
     };
-    let parts = AdditionalParts { elements: vec![Arc::new(lever)], contacts: vec![("right", "rail", contact)] };
+    let parts = AdditionalParts { elements: [lever].into_iter().collect(), contacts: vec![("right", "rail", contact)] };
     Scene::with_parts(None, &request(method, extra), parts).expect("a scene")
 }
 

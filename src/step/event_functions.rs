@@ -11,12 +11,13 @@
 use crate::algebra::dense::assembly::Sink;
 use crate::mechanics::contact::vector::{Vector, add, direction_of, dot, scaled};
 use crate::mechanics::contact::{Mode, Sliding};
-use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::closing_equation::ClosingEquation;
 use crate::mechanics::equations::stage_criteria::End;
+use crate::mechanics::equations::{ModeSystem, matrix};
 use crate::mechanics::multi_contact::contact_status::none_from_cone;
 use crate::mechanics::multi_contact::planar;
-use crate::mechanics::multi_contact::spatial::Pocket;
+use crate::mechanics::multi_contact::spatial::ContactGroup;
+use crate::mechanics::multi_contact::spatial::cone_sum;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces;
 use crate::mechanics::problem::state::{Rate, State};
@@ -67,7 +68,7 @@ pub fn of_mode(loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate)
         if together.len() > before {
             if node_forces::is_in_plane(loading, data) {
                 watches.extend([0, 1].map(|side| Watch::Facet { corner, side }));
-            } else if Pocket::new(loading, &together[before..], state).keeps(loading, state, rate) {
+            } else if ContactGroup::new(loading, &together[before..], state).keeps(loading, state, rate) {
                 watches.push(Watch::Slide { corner });
             } else {
                 watches.extend([Watch::Hold { corner }, Watch::Return { corner }]);
@@ -141,12 +142,12 @@ impl Watch {
                 dot(&inward[side], &node_forces::total_force(loading, holding.into_iter(), state))
             }
             Self::Slide { corner } | Self::Hold { corner } | Self::Return { corner } => {
-                let pocket = pocket(loading, corner, modes, state);
-                let force = pocket.force(loading, state);
+                let group = group(loading, corner, modes, state);
+                let force = group.force(loading, state);
                 match self {
-                    Self::Hold { .. } => pocket.hold(&force),
-                    Self::Return { .. } => -pocket.margin(&force),
-                    _ => pocket.margin(&force),
+                    Self::Hold { .. } => cone_sum::distance_from_bound(&group, &force),
+                    Self::Return { .. } => -group.margin(&force),
+                    _ => group.margin(&force),
                 }
             }
             Self::LoadRate { sign } => sign * rate.load,
@@ -173,12 +174,12 @@ impl Watch {
                 Some(loading.contacts[contact].friction.bound(change.normal) + traction)
             }
             Self::Slide { corner } | Self::Hold { corner } | Self::Return { corner } => {
-                let pocket = pocket(loading, corner, modes, state);
-                let (force, change) = (pocket.force(loading, state), pocket.force_rate(loading, state, rate));
+                let group = group(loading, corner, modes, state);
+                let (force, change) = (group.force(loading, state), group.force_rate(loading, state, rate));
                 Some(match self {
-                    Self::Hold { .. } => pocket.hold_slope(&force, &change),
-                    Self::Return { .. } => -pocket.margin_slope(&force, &change),
-                    _ => pocket.margin_slope(&force, &change),
+                    Self::Hold { .. } => cone_sum::distance_slope(&group, &force, &change),
+                    Self::Return { .. } => -group.margin_slope(&force, &change),
+                    _ => group.margin_slope(&force, &change),
                 })
             }
             Self::Sliding(_) | Self::LoadRate { .. } | Self::Facet { .. } => None,
@@ -294,7 +295,7 @@ impl ClosingEquation for EventZero<'_> {
     }
 
     fn write_gradient(&self, system: &ModeSystem<'_>, _state: &State, matrix: &mut dyn Sink) {
-        system.border(matrix, self.towards);
+        matrix::border(system, matrix, self.towards);
     }
 
     fn slope_beside_row(&self, system: &ModeSystem<'_>, state: &State, rate: &Rate) -> Option<f64> {
@@ -307,9 +308,9 @@ impl ClosingEquation for EventZero<'_> {
 }
 
 /// The obstacles that hold a node in space, or a guided one, in these modes.
-fn pocket(loading: Loading<'_>, corner: usize, modes: &[Mode], state: &State) -> Pocket {
+fn group(loading: Loading<'_>, corner: usize, modes: &[Mode], state: &State) -> ContactGroup {
     let holding: Vec<usize> = loading.corners[corner].holding(modes).collect();
-    Pocket::new(loading, &holding, state)
+    ContactGroup::new(loading, &holding, state)
 }
 
 /// The direction of a slip at a state.

@@ -12,35 +12,20 @@ use crate::mechanics::equations::solution::Failure;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::state::State;
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
+use crate::step::corrector::newton;
+use crate::step::corrector::tolerances::ACCEPTED_RESIDUAL;
 use crate::step::event_functions::Watch;
 use crate::step::interpolation::{Knot, NewtonPolynomial, PlacedPoint, between, placed, unit};
-use crate::step::segment::{PASSED, Reached, Refused, StepStart};
+use crate::step::segment::{Reached, Refused, StepStart};
+use crate::step::tolerances::{
+    EVENT_TOLERANCE, LARGEST_DEVIATION, LARGEST_SLOPE_RATIO, LOCATED_VALUE, LONGEST_STRAIGHT_STEP, OFFSET_MULTIPLE,
+    POSITION_ROUND_OFF_MULTIPLE, SLOWEST_DECREASE, SMALLEST_SEPARATION, STRAIGHT_STEP_MULTIPLE,
+};
 
-/// Largest value of a quantity, over its scale, at a point accepted as its zero.
-const LOCATED: f64 = 1e-16;
 /// Largest number of points tried.
 const MOST_POINTS: usize = 100;
 /// Distances past the start, over the bracket, at which a quantity that is zero at the start is evaluated.
 const FURTHER_ON: [f64; 3] = [1e-3, 1e-6, 1e-9];
-/// Ratio to the nearest earlier value above which a value has decreased too slowly.
-const SLOW: f64 = 0.25;
-/// Multiple of the tolerance on zero within which the zero is found by a straight step; the error of the step is of
-/// second order.
-const BY_SERIES: f64 = 1e3;
-/// Largest length of this step over the distance to the next point, between which the direction is interpolated
-/// linearly.
-const MOST_BY_SERIES: f64 = 1e-3;
-/// Points closer than this to another, over the bracket, give no further information.
-const CLOSE: f64 = 1e-2;
-/// Slopes that differ by no more than this factor count as similar.
-const ALIKE: f64 = 4.0;
-/// Largest distance of the point at which a bound is met from the estimate, over the bracket.
-const EXPECTED: f64 = 0.1;
-/// Distance at which a point is tried beside a position where none is found, over the tolerance on positions.
-const BESIDE: f64 = 16.0;
-/// Multiple of the rounding of a state's numbers within which two positions coincide.
-const ROOM: f64 = 4.0;
 
 /// The points of a step computed so far, in order, and the start of the step.
 pub(crate) struct StepPoints {
@@ -117,7 +102,7 @@ impl Bracket {
         let width = self.width();
         let near = |place: f64| (place - first.knot.place).abs().min((place - last.knot.place).abs());
         // Of points that lie close together only one is used, since their difference is round-off.
-        let apart = |sample: &&Sample| near(sample.knot.place) > CLOSE * width;
+        let apart = |sample: &&Sample| near(sample.knot.place) > SMALLEST_SEPARATION * width;
         let third = self.samples.iter().filter(apart).min_by(|a, b| near(a.knot.place).total_cmp(&near(b.knot.place)));
         let mut used = vec![first, last];
         if last.value.abs() < first.value.abs() {
@@ -191,8 +176,8 @@ pub(crate) fn locate(
     let unclear = Refused::Newton(Failure::NotConverged);
     let last = stretch.points.last().ok_or(unclear)?;
     let reach = last.0.state.displacement.iter().fold(last.0.state.load.abs(), |most, value| most.max(value.abs()));
-    let same_place = |place: f64| ROOM * f64::EPSILON * (place + reach);
-    let located = zero * (LOCATED / PASSED);
+    let same_place = |place: f64| POSITION_ROUND_OFF_MULTIPLE * f64::EPSILON * (place + reach);
+    let located = zero * (LOCATED_VALUE / EVENT_TOLERANCE);
     if let Watch::End(end) = watch
         && let Some(bracket) = bracket(start, watch, stretch, 0.0)
         && let Some(found) = meet(start, end, &bracket, stretch, work)
@@ -224,7 +209,7 @@ pub(crate) fn locate(
             return Ok(stretch.points[best - 1].1.clone());
         }
         // Exactly at this position the equations may be singular to the last digit.
-        let beside = (place - BESIDE * same_place(place)).max(0.5 * place);
+        let beside = (place - OFFSET_MULTIPLE * same_place(place)).max(0.5 * place);
         let found = stretch.reach(start, place, work).or_else(|refused| match watch {
             // A bound at a singular point ends the stage there: see `stage_end`.
             Watch::End(_) => Err(refused),
@@ -234,7 +219,7 @@ pub(crate) fn locate(
         if value.abs() <= located {
             return Ok(found);
         }
-        if value.abs() <= BY_SERIES * zero
+        if value.abs() <= STRAIGHT_STEP_MULTIPLE * zero
             && let Some(exact) = by_series(start, watch, stretch, zero, &found)
         {
             return Ok(exact);
@@ -243,7 +228,7 @@ pub(crate) fn locate(
             // The remainder is round-off.
             return Ok(if value.abs() < nearest { found } else { stretch.points[best.max(1) - 1].1.clone() });
         }
-        halve = value.abs() > SLOW * nearest;
+        halve = value.abs() > SLOWEST_DECREASE * nearest;
         nearest = nearest.min(value.abs());
     }
     Err(unclear)
@@ -251,7 +236,7 @@ pub(crate) fn locate(
 
 /// Whether a quantity that is zero at a point falls through zero there.
 pub(crate) fn falls_through(start: &StepStart<'_>, watch: Watch, stretch: &StepPoints, zero: &Reached) -> bool {
-    let away = |placed: &&PlacedPoint| (placed.place - zero.step).abs() > CLOSE * zero.step;
+    let away = |placed: &&PlacedPoint| (placed.place - zero.step).abs() > SMALLEST_SEPARATION * zero.step;
     let sampled = |placed: &PlacedPoint| {
         (placed.place - zero.step, watch.value(start.loading, start.modes, &placed.state, &placed.rate))
     };
@@ -279,7 +264,7 @@ fn by_series(
     let distance = |point: &PlacedPoint| (point.place - place).abs();
     let (near, far) = if distance(left) < distance(right) { (left, right) } else { (right, left) };
     let (way, width) = (place - near.place, far.place - near.place);
-    if way.abs() > MOST_BY_SERIES * width.abs() {
+    if way.abs() > LONGEST_STRAIGHT_STEP * width.abs() {
         return None;
     }
     let mut rate = near.rate.clone();
@@ -313,7 +298,7 @@ fn meet(
     let system = ModeSystem::new(start.loading, start.modes, start.state);
     let mut met = start.settle(system, stretch.guess(place), &end.held()?, work).ok()?;
     end.make_exact(&mut met.corrected.state);
-    ((met.step - place).abs() <= EXPECTED * bracket.width()).then_some(met)
+    ((met.step - place).abs() <= LARGEST_DEVIATION * bracket.width()).then_some(met)
 }
 
 /// Adds a point past the start at which a quantity that is zero at the start is positive.
@@ -338,7 +323,7 @@ fn begin_further_on(
 /// values on both sides have similar, negative slopes.
 fn falls(before: (f64, f64), after: (f64, f64)) -> bool {
     let (first, second) = (before.1 / before.0, after.1 / after.0);
-    first < 0.0 && second < 0.0 && first <= second / ALIKE && second <= first / ALIKE
+    first < 0.0 && second < 0.0 && first <= second / LARGEST_SLOPE_RATIO && second <= first / LARGEST_SLOPE_RATIO
 }
 
 #[cfg(test)]

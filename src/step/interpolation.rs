@@ -3,6 +3,7 @@
 
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::segment::{Reached, StepStart};
+use crate::step::tolerances::LONGEST_EXTRAPOLATION;
 use serde::{Deserialize, Serialize};
 
 /// A point on the path with its `place`: the distance from the start of the step, negative before the start.
@@ -23,9 +24,6 @@ pub(crate) fn placed(start: &StepStart<'_>, reached: &Reached) -> PlacedPoint {
     PlacedPoint { place, state: reached.corrected.state.clone(), rate }
 }
 
-/// Largest step, over the step before, for which the path is extrapolated: round-off must not be amplified visibly.
-const MOST_FORESEEN: f64 = 4.0;
-
 impl PlacedPoint {
     /// The point before another of the same mode; `rate` is the direction at this point.
     pub fn before(state: State, mut rate: Rate, here: &State) -> Option<Self> {
@@ -43,7 +41,7 @@ impl PlacedPoint {
     /// extrapolated linearly: round-off that does not enter the equations, of a traction off its plane, must not grow
     /// from step to step.
     pub fn foresee(&self, here: &State, rate: &Rate, step: f64) -> Option<State> {
-        if step > -MOST_FORESEEN * self.place {
+        if step > -LONGEST_EXTRAPOLATION * self.place {
             return None;
         }
         let mut state = here.advanced(rate, step);

@@ -17,3 +17,4 @@ pub(crate) mod increment_mpec;
 pub(crate) mod interpolation;
 pub(crate) mod segment;
 pub(crate) mod singular_step;
+pub(crate) mod tolerances;

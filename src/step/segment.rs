@@ -2,13 +2,13 @@
 
 use crate::algebra::SystemFactorisation;
 use crate::mechanics::contact::Mode;
-use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::closing_equation::{ArcLengthEquation, ClosingEquation};
 use crate::mechanics::equations::solution::{Corrected, Failure, Tangent};
 use crate::mechanics::equations::stage_criteria::End;
+use crate::mechanics::equations::{ModeSystem, slip_turning};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
-use crate::step::corrector::cached_factorisation::AtHand;
+use crate::step::corrector::cached_factorisation::CachedFactorisation;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
 use crate::step::corrector::slip_error;
@@ -19,6 +19,10 @@ use crate::step::event_location;
 use crate::step::event_location::StepPoints;
 use crate::step::interpolation::PlacedPoint;
 use crate::step::singular_step;
+use crate::step::tolerances::{
+    BOUND_TOLERANCE, COINCIDENCE_TOLERANCE, EVENT_TOLERANCE, LARGEST_TURN, LARGEST_TURN_CORRECTION, SETTLED_ANGLE,
+    SMALLEST_COSINE,
+};
 
 /// The start of a step.
 #[derive(Clone, Copy)]
@@ -55,7 +59,7 @@ pub struct Reached {
     /// The contact whose slip ends with the step, where its speed falls through zero.
     pub stopped: Option<usize>,
     /// A factorisation of the equations nearby.
-    pub nearby: AtHand,
+    pub nearby: CachedFactorisation,
     /// Number of motions that share the limit point, where there are several; else 0.
     pub motions: usize,
 }
@@ -63,7 +67,7 @@ pub struct Reached {
 impl Reached {
     /// A point without event; boxed, since it is passed on many times.
     pub(crate) fn new(corrected: Corrected, rate: Rate, step: f64, error_estimate: f64) -> Box<Self> {
-        let (drift, event, determinant, stopped, nearby) = (None, None, None, None, AtHand::default());
+        let (drift, event, determinant, stopped, nearby) = (None, None, None, None, CachedFactorisation::default());
         let motions = 0;
         Box::new(Self { corrected, rate, step, error_estimate, drift, event, determinant, stopped, nearby, motions })
     }
@@ -103,28 +107,14 @@ pub enum Refused {
     Apart,
 }
 
-/// Largest turn of the direction (radians) in a step.
-const MOST_TURN: f64 = 0.6;
-/// Cosine of [`MOST_TURN`].
-const LEAST_COSINE: f64 = 0.825_335_614_909_678_3;
-/// Largest angle (radians) by which the turns at the ends of a step may deflect the chord of a slip.
-const MOST_CORRECTION: f64 = 0.1;
 /// Largest number of solves of an increment in which directions of slip settle.
 const MOST_PASSES: u64 = 12;
-/// Change of the angles (radians) of these directions up to which they have settled.
-const SETTLED: f64 = 1e-10;
-/// Magnitude of an event function, over its scale, up to which a negative value does not count as passed.
-pub(crate) const PASSED: f64 = 1e-13;
-/// Distance (dimensionless) within which a bound of the stage is reached.
-pub const AT_END: f64 = 1e-12;
 /// Largest number of zeros and dips located in one step, each nearer to the start than the one before.
 const MOST_LOOKS: usize = 32;
-/// Tolerance within which two quantities are zero at the same point.
-pub(crate) const COINCIDING: f64 = 1e-10;
 
-/// Refuses a turn by more than [`MOST_TURN`].
+/// Refuses a turn by more than [`LARGEST_TURN`].
 pub(crate) fn may_turn(cosine: f64) -> Result<(), Refused> {
-    if cosine < LEAST_COSINE { Err(Refused::Turned(cosine.clamp(-1.0, 1.0).acos())) } else { Ok(()) }
+    if cosine < SMALLEST_COSINE { Err(Refused::Turned(cosine.clamp(-1.0, 1.0).acos())) } else { Ok(()) }
 }
 
 impl StepStart<'_> {
@@ -197,7 +187,7 @@ impl StepStart<'_> {
             // Solve again, now that the turn of the slips at the end is known; where directions settle, until they
             // have.
             for pass in 1.. {
-                let settles = system.set_turns(self.rate, &corrected, &tangent);
+                let settles = slip_turning::set_turns(&mut system, self.rate, &corrected, &tangent);
                 let again = newton::correct_from(
                     &system,
                     system.iterate_of(&corrected),
@@ -209,26 +199,26 @@ impl StepStart<'_> {
                 .map_err(Refused::Newton)?;
                 // The first solve shows how difficult the increment is.
                 let hardness = corrected.iterations_to_small;
-                let change = system.largest_turn(&again, Some(&corrected));
+                let change = slip_turning::largest_turn(&system, &again, Some(&corrected));
                 corrected = again;
                 corrected.iterations_to_small = hardness;
                 let factorisations = &mut work.factorisations;
                 tangent = tangent::tangent_and_error(&system, &corrected, self.rate, &mut None, factorisations)
                     .ok_or(singular)?;
-                if !settles || change <= SETTLED {
+                if !settles || change <= SETTLED_ANGLE {
                     break;
                 }
                 if pass == MOST_PASSES {
                     return Err(Refused::Newton(Failure::NotConverged));
                 }
             }
-            let turn = system.largest_turn(&corrected, None);
-            if turn > MOST_TURN {
+            let turn = slip_turning::largest_turn(&system, &corrected, None);
+            if turn > LARGEST_TURN {
                 return Err(Refused::Turned(turn));
             }
             // The series is no longer valid where the turn changes much within the step.
-            let correction = system.largest_correction(&corrected);
-            if correction > MOST_CORRECTION {
+            let correction = slip_turning::largest_correction(&system, &corrected);
+            if correction > LARGEST_TURN_CORRECTION {
                 return Err(Refused::Turned(correction));
             }
         }
@@ -240,7 +230,7 @@ impl StepStart<'_> {
         may_turn(cosine(self.rate).min(cosine(&rate)))?;
         let mut reached = Reached::new(corrected, rate, step, error_estimate);
         reached.determinant = determinant;
-        reached.nearby = AtHand::shared(serving.as_ref());
+        reached.nearby = CachedFactorisation::shared(serving.as_ref());
         Ok(reached)
     }
 
@@ -351,7 +341,7 @@ impl StepStart<'_> {
             event = ends
                 .iter()
                 .map(|end| Watch::End(*end))
-                .find(|watch| self.value(*watch, &reached.corrected.state, &reached.rate) <= AT_END);
+                .find(|watch| self.value(*watch, &reached.corrected.state, &reached.rate) <= BOUND_TOLERANCE);
         }
         if matches!(event, None | Some(Watch::LoadRate { .. })) {
             // A contact may reach the end of its mode exactly where the step ends, or at the limit point itself: the
@@ -404,7 +394,7 @@ impl StepStart<'_> {
             let factorisations = &mut work.factorisations;
             let tangent =
                 tangent::tangent_and_error(&system, &reached.corrected, self.rate, &mut None, factorisations)?;
-            system.set_turns(self.rate, &reached.corrected, &tangent);
+            slip_turning::set_turns(&mut system, self.rate, &reached.corrected, &tangent);
             let middle = self.reach(0.5 * reached.step, work).ok()?;
             slip_error::drift(
                 &system,
@@ -425,7 +415,7 @@ impl StepStart<'_> {
     }
 
     pub(crate) fn zero(&self, watch: Watch, reached: &Reached) -> f64 {
-        PASSED * self.scale(watch, reached)
+        EVENT_TOLERANCE * self.scale(watch, reached)
     }
 
     fn scale(&self, watch: Watch, reached: &Reached) -> f64 {
@@ -447,9 +437,9 @@ impl StepStart<'_> {
             let forces = self.force_scale.max(reached.corrected.force_scale);
             let state = &reached.corrected.state;
             let last = self.value(*watch, state, &reached.rate);
-            !watch.is_above_zero(self.loading, state, last, COINCIDING, forces)
+            !watch.is_above_zero(self.loading, state, last, COINCIDENCE_TOLERANCE, forces)
                 && self.value(*watch, self.state, self.rate)
-                    > watch.zero_within(self.loading, state, COINCIDING, forces)
+                    > watch.zero_within(self.loading, state, COINCIDENCE_TOLERANCE, forces)
         })
     }
 
@@ -497,12 +487,12 @@ impl StepStart<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::{LEAST_COSINE, MOST_TURN, may_turn};
+    use super::{LARGEST_TURN, SMALLEST_COSINE, may_turn};
 
     #[test]
     fn the_least_cosine_is_that_of_the_most_turn() {
         // Up to round-off, in which the cosines of different libraries differ.
-        assert!((LEAST_COSINE - MOST_TURN.cos()).abs() < 1e-15);
-        assert!(may_turn(0.99 * LEAST_COSINE).is_err() && may_turn(1.01 * LEAST_COSINE).is_ok());
+        assert!((SMALLEST_COSINE - LARGEST_TURN.cos()).abs() < 1e-15);
+        assert!(may_turn(0.99 * SMALLEST_COSINE).is_err() && may_turn(1.01 * SMALLEST_COSINE).is_ok());
     }
 }

@@ -82,14 +82,14 @@ pub const LIMITS: [Limit; 8] = [
         what: "types of the solver with inherent impl blocks in several files",
         measure: |measures| measures.spread_types.len(),
         aim: 0,
-        at_most: 2,
+        at_most: 0,
         why: "Methods in other files are dependencies that no import shows: each file can reach every field.",
     },
     Limit {
         what: "lines of the longest function",
         measure: |measures| measures.functions.iter().map(|function| function.lines).max().unwrap_or(0),
         aim: 80,
-        at_most: 89,
+        at_most: 80,
         why: "A function that does not fit on a screen does several things.",
     },
 ];

@@ -130,7 +130,7 @@ impl Blocks {
         }
         let factor = match friction {
             Friction::Bordered => Factor::Symmetric(SymmetricFactor::new(matrix.pattern.clone(), &values).ok()?),
-            Friction::Folded => Factor::Unsymmetric(UnsymmetricFactor::new(matrix.pattern.clone(), &values)?),
+            Friction::Eliminated => Factor::Unsymmetric(UnsymmetricFactor::new(matrix.pattern.clone(), &values)?),
         };
         let reduced = BorderSchurComplement::new(factor, unknowns, columns, rows, corner)?;
         Some(Self { elimination, reduced, unknowns, borders, kept_columns, kept_rows, shifts, held_parts, sign })
@@ -260,7 +260,7 @@ fn columns_of_rest(
     let (mut columns, mut held_parts) = (Vec::with_capacity(count), Vec::with_capacity(count));
     for (column, shift) in kept_columns.iter().zip(shifts) {
         let (mut free, mut held) = elimination.rotated(&right[*column]);
-        free.extend(elimination.folded(&held));
+        free.extend(elimination.eliminated_friction(&held));
         for (unknown, motion) in shift {
             let moved = elimination.stiffness_at(*unknown)?.iter().map(|(row, value)| (*row, value * motion));
             elimination.split_into(moved, &mut free, &mut held);

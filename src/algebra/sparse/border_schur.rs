@@ -28,7 +28,7 @@ impl Factor {
     }
 
     /// Ratio of the smallest to the largest pivot magnitude; 1 for symmetric factors, whose pivots are between
-    /// [`crate::algebra::sparse::factors::ldl::SMALL`] and 1.
+    /// [`crate::algebra::sparse::factors::tolerances::SMALLEST_PIVOT`] and 1.
     pub fn pivot_ratio(&self) -> f64 {
         match self {
             Self::Symmetric(_) => 1.0,

@@ -16,6 +16,9 @@ use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;
 use crate::algebra::sparse::fallback_lu::WholeLu;
 use crate::algebra::sparse::nodal_elimination::{Elimination, Friction, Holdings};
+use crate::algebra::sparse::tolerances::{
+    ACCEPTED_BACKWARD_ERROR, CONVERGED_BACKWARD_ERROR, KNOWN_SOLUTION_ERROR, REGULAR_PIVOT_RATIO,
+};
 use nalgebra::DVector;
 use std::sync::{Arc, OnceLock};
 
@@ -29,14 +32,6 @@ pub struct SparseFactorisation {
     pivot_ratio: f64,
 }
 
-/// Backward error at which a solution is as good as rounding allows.
-const GOOD: f64 = 1e-15;
-/// Backward error up to which a solution is accepted.
-const ACCEPTED: f64 = 1e-11;
-/// Pivot ratio of the complement above which the matrix counts as regular.
-const CERTAIN: f64 = 1e-6;
-/// Error of a known solution of magnitude 1 from which the matrix counts as singular.
-const SINGULAR: f64 = 1e-3;
 /// Largest number of refinements of one solution.
 const MOST_REFINEMENTS: usize = 6;
 
@@ -58,7 +53,7 @@ impl SparseFactorisation {
         let (sign, pivot_ratio) =
             blocks.as_ref().map_or((1.0, 0.0), |blocks| (blocks.determinant_sign(), blocks.reduced.pivot_ratio()));
         let factorisation = Self { matrix, blocks, whole: OnceLock::new(), sign, pivot_ratio };
-        (pivot_ratio > CERTAIN || factorisation.finds_what_is_known()).then_some(factorisation)
+        (pivot_ratio > REGULAR_PIVOT_RATIO || factorisation.finds_what_is_known()).then_some(factorisation)
     }
 
     /// The factorisation of the matrix with another last row, which `put_last` assembles, equal to a new factorisation
@@ -75,7 +70,7 @@ impl SparseFactorisation {
         let blocks = self.blocks.take()?.with_row(last, row)?;
         (self.sign, self.pivot_ratio) = (blocks.determinant_sign(), blocks.reduced.pivot_ratio());
         (self.blocks, self.whole) = (Some(blocks), OnceLock::new());
-        (self.pivot_ratio > CERTAIN).then_some(self)
+        (self.pivot_ratio > REGULAR_PIVOT_RATIO).then_some(self)
     }
 
     /// Whether known solutions are recovered: near a singular matrix they are not, however small the residual.
@@ -86,7 +81,7 @@ impl SparseFactorisation {
             let known = DVector::from_fn(self.matrix.size(), |row, _| entry(row));
             let (mut values, mut sizes) = (DVector::zeros(known.len()), vec![0.0; known.len()]);
             self.matrix.multiply(known.as_slice(), values.as_mut_slice(), &mut sizes);
-            self.solve(&mut values) && (values - known).amax() <= SINGULAR
+            self.solve(&mut values) && (values - known).amax() <= KNOWN_SOLUTION_ERROR
         };
         comes_out(&first) && comes_out(&second)
     }
@@ -166,12 +161,12 @@ impl SparseFactorisation {
             if best.as_ref().is_none_or(|(least, _)| error < *least) {
                 best = Some((error, solution.clone()));
             }
-            if error <= GOOD || !halved || !solve(rest.as_mut_slice()) {
+            if error <= CONVERGED_BACKWARD_ERROR || !halved || !solve(rest.as_mut_slice()) {
                 break;
             }
             solution += rest;
         }
-        best.filter(|(error, _)| *error <= ACCEPTED).map(|(_, solution)| solution)
+        best.filter(|(error, _)| *error <= ACCEPTED_BACKWARD_ERROR).map(|(_, solution)| solution)
     }
 }
 
@@ -213,7 +208,7 @@ fn friction_of(matrix: &Bordered, holdings: &Holdings) -> Friction {
     // already, the work need not be counted.
     let least = entries.saturating_mul(entries) / (pattern.size() as u64).max(1);
     let most = LITTLE.max(entries.saturating_mul(2 * solves) / SLOWER);
-    if least <= most && pattern.fill().work <= most { Friction::Folded } else { Friction::Bordered }
+    if least <= most && pattern.fill().work <= most { Friction::Eliminated } else { Friction::Bordered }
 }
 
 /// The inertia of `Zᵀ K Z`, with the columns of `Z` spanning the motions that the holdings allow. `None` where it

@@ -22,6 +22,7 @@ pub(crate) mod nodal_elimination;
 pub(crate) mod preconditioned_refinement;
 #[cfg(test)]
 mod tests;
+pub(crate) mod tolerances;
 
 pub use factorisation::{SparseFactorisation, held_inertia};
 pub use factors::bordered_matrix::Bordered;

@@ -7,17 +7,11 @@
 
 use crate::algebra::sparse::factorisation::{SparseFactorisation, backward_error};
 use crate::algebra::sparse::factors::bordered_matrix::Bordered;
+use crate::algebra::sparse::tolerances::{
+    CONVERGED_BACKWARD_ERROR, EXTRAPOLATION_MARGIN, FIRST_CONTRACTION, STAGNATED_BACKWARD_ERROR,
+};
 use nalgebra::DVector;
 
-/// Largest first contraction at which two matrices count as near.
-const NEAR: f64 = 1e-3;
-/// Backward error at which a solution is as good as rounding allows.
-const GOOD: f64 = 1e-15;
-/// Backward error up to which a solution that improves no further is accepted.
-const ACCEPTED: f64 = 1e-14;
-/// Fraction of the accepted backward error below which the next error, extrapolated from the last contraction, need not
-/// be computed.
-const CERTAIN: f64 = 1e-3;
 /// Largest number of corrections of one solution.
 const MOST_CORRECTIONS: usize = 8;
 
@@ -69,11 +63,11 @@ impl<'a> Nearby<'a> {
                 return None;
             }
             let changes = || self.sizes(&rest);
-            if round == 0 && changes().iter().zip(&firsts).any(|(change, first)| *change > NEAR * first) {
+            if round == 0 && changes().iter().zip(&firsts).any(|(change, first)| *change > FIRST_CONTRACTION * first) {
                 return None;
             }
             solutions.iter_mut().zip(&rest).for_each(|(value, correction)| *value += correction);
-            if round > 0 && error * (error / before) <= CERTAIN * accepted {
+            if round > 0 && error * (error / before) <= EXTRAPOLATION_MARGIN * accepted {
                 return Some(solutions);
             }
             before = error;
@@ -102,7 +96,9 @@ impl<'a> Nearby<'a> {
             self.matrix.multiply(solution.as_slice(), product.as_mut_slice(), &mut sizes);
             let mut correction = right_hand_side - &product;
             let error = backward_error(correction.as_slice(), right_hand_side.as_slice(), &sizes);
-            if round > 1 && (error <= GOOD || (error <= ACCEPTED && error > 0.5 * least)) {
+            if round > 1
+                && (error <= CONVERGED_BACKWARD_ERROR || (error <= STAGNATED_BACKWARD_ERROR && error > 0.5 * least))
+            {
                 return Some(solution);
             }
             if !self.factorisation.solve_once(&mut correction) {
@@ -112,7 +108,7 @@ impl<'a> Nearby<'a> {
             let change = correction.rows(0, self.matrix.pattern.size()).amax();
             match round {
                 0 => first = change,
-                1 if change > NEAR * first => return None,
+                1 if change > FIRST_CONTRACTION * first => return None,
                 _ => {}
             }
             least = least.min(error);

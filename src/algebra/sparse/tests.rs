@@ -169,7 +169,7 @@ fn solutions_and_signs_are_those_of_the_dense_one() {
                 if known.pivot_ratio() < 1e-5 {
                     continue;
                 }
-                let (ways, none) = ([Friction::Bordered, Friction::Folded], Holdings::default());
+                let (ways, none) = ([Friction::Bordered, Friction::Eliminated], Holdings::default());
                 for (holdings, friction) in ways.iter().flat_map(|way| [(&holdings, *way), (&none, *way)]) {
                     let found = SparseFactorisation::with(sparse.clone(), holdings, friction).expect("regular");
                     assert_eq!(found.determinant_sign(), known.determinant_sign(), "{dimension} {nodes}");
@@ -240,7 +240,7 @@ fn nodes_serve_on_only_while_borders_are_the_same() {
     let mut compared = 0;
     for kind in kinds() {
         let System { mut sparse, holdings, .. } = system(&mut random, 2, 12, kind);
-        for friction in [Friction::Bordered, Friction::Folded] {
+        for friction in [Friction::Bordered, Friction::Eliminated] {
             for change in 0..4 {
                 match change {
                     1 => sparse.values.iter_mut().for_each(|value| *value *= 1.5),
@@ -285,7 +285,7 @@ fn singular_systems_are_refused() {
             sparse.lower[last] = twin;
             let none = Holdings::default();
             for (holdings, friction) in
-                [Friction::Bordered, Friction::Folded].iter().flat_map(|way| [(&holdings, *way), (&none, *way)])
+                [Friction::Bordered, Friction::Eliminated].iter().flat_map(|way| [(&holdings, *way), (&none, *way)])
             {
                 let found = SparseFactorisation::with(sparse.clone(), holdings, friction);
                 assert!(
@@ -380,7 +380,7 @@ fn the_last_row_may_be_another() {
                 row.iter().enumerate().for_each(|(column, value)| matrix.add(last, column, *value));
             };
             put(&mut other);
-            for friction in [Friction::Bordered, Friction::Folded] {
+            for friction in [Friction::Bordered, Friction::Eliminated] {
                 let anew = SparseFactorisation::with(other.clone(), &holdings, friction).expect("regular");
                 let first = SparseFactorisation::with(sparse.clone(), &holdings, friction).expect("regular");
                 let Some(second) = first.with_last_row(put) else { continue };

@@ -8,20 +8,20 @@ use crate::algebra::scalar_root::find_root;
 use crate::branching::bifurcation::locate::{self, Located, LocatedEnd, WIDTHS};
 use crate::branching::bifurcation::simultaneous_limit_points;
 use crate::branching::bifurcation::singularity::test_functions::{self, Signature, SignatureChange};
+use crate::branching::bifurcation::tolerances::LARGEST_SHIFT_TO_BOUND;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
+use crate::step::corrector::newton;
+use crate::step::corrector::tolerances::ACCEPTED_RESIDUAL;
 use crate::step::event_functions::Watch;
 use crate::step::interpolation::{PlacedPoint, between, placed, unit};
-use crate::step::segment::{AT_END, Reached, StepStart};
+use crate::step::segment::{Reached, StepStart};
+use crate::step::tolerances::BOUND_TOLERANCE;
 
 /// Trial step lengths, relative to the step that ends at the bound: the point past the bound has to be regular.
 const LENGTHENED: [f64; 4] = [1.0, 1.01, 1.1, 1.5];
-
-/// How far a bifurcation point is moved along the path to meet a bound that lies within round-off of it.
-const ALONG: f64 = 1e-9;
 
 /// Ends a step at a bound of the stage, or at the bifurcation point just before it, where Newton's method does not
 /// reach the bound; `None` where there is no singular point nearby.
@@ -42,7 +42,7 @@ pub fn beside_singular(
     let left_to = |bound: &End, state: &State| Watch::End(*bound).value(start.loading, start.modes, state, start.rate);
     let beyond = LENGTHENED.iter().find_map(|factor| {
         let beyond = start.advance(factor * step, &[], load_sign, simultaneous_limit_points::locate, work).ok()?;
-        let passed = bounds.iter().any(|bound| left_to(bound, &beyond.corrected.state) < -AT_END);
+        let passed = bounds.iter().any(|bound| left_to(bound, &beyond.corrected.state) < -BOUND_TOLERANCE);
         (passed && beyond.determinant.is_some()).then_some(beyond)
     })?;
     let here = Signature::at(start.loading, start.modes, start.state, start.rate, &mut None, work);
@@ -80,12 +80,15 @@ fn at_crossing(
     let [nearer, farther] = located.between(start, beyond.step, work)?;
     let Located { mut point, crossing, .. } = located;
     let width = farther.place - nearer.place;
-    if let Some(bound) = bounds.iter().find(|bound| left_to(bound, &point.corrected.state).abs() <= AT_END) {
+    if let Some(bound) = bounds.iter().find(|bound| left_to(bound, &point.corrected.state).abs() <= BOUND_TOLERANCE) {
         // The bifurcation point and the bound coincide within round-off; the bound is met exactly.
         let watch = Watch::End(*bound);
         let slope = watch.slope(start.loading, start.modes, &point.corrected.state, &point.rate).unwrap_or(0.0);
         let ahead = -left_to(bound, &point.corrected.state) / slope;
-        let state = point.corrected.state.advanced(&point.rate, if ahead.abs() <= ALONG { ahead } else { 0.0 });
+        let state = point
+            .corrected
+            .state
+            .advanced(&point.rate, if ahead.abs() <= LARGEST_SHIFT_TO_BOUND { ahead } else { 0.0 });
         let found = ended(start, state, &point.rate, *bound, width, beyond)?;
         let after = crossing.after;
         return Some((found, Some(crossing), Some(after)));

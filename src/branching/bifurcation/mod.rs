@@ -13,3 +13,4 @@ pub(crate) mod branch_directions;
 pub(crate) mod locate;
 pub(crate) mod simultaneous_limit_points;
 pub(crate) mod singularity;
+pub(crate) mod tolerances;

@@ -21,34 +21,28 @@ use crate::algebra::scalar_root::find_root;
 use crate::algebra::{nearest_null_space, null_space_as_scaled};
 use crate::branching::bifurcation::branch_directions::{Branches, SingularPoint};
 use crate::branching::bifurcation::locate::WIDTHS;
-use crate::branching::bifurcation::singularity::null_vectors::SINGULAR;
+use crate::branching::bifurcation::singularity::tolerances::SINGULAR_PIVOT;
+use crate::branching::bifurcation::tolerances::{COUPLING_TOLERANCE, DIFFERENCE_STEP, INCOMING_COSINE, RESTING_SPEED};
 use crate::branching::directions::candidate::CandidateDirection;
 use crate::branching::directions::choice::{DirectionChoice, potential_rate, sign_of};
 use crate::branching::directions::trial_step::confirm_by;
 use crate::complementarity::rates::combinations::{combinations, count};
 use crate::mechanics::contact::{Mode, Reaction, vector};
-use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::scaled_rows::scaled_rows;
+use crate::mechanics::equations::{ModeSystem, matrix, rate_recovery};
 use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::mechanics::problem::state::{Rate, State, dot};
-use crate::step::corrector::cached_factorisation::AtHand;
+use crate::step::corrector::cached_factorisation::CachedFactorisation;
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
+use crate::step::corrector::newton;
+use crate::step::corrector::tolerances::ACCEPTED_RESIDUAL;
 use crate::step::event_functions::Watch;
 use crate::step::interpolation::{PlacedPoint, between, placed, unit};
 use crate::step::segment::{Reached, StepStart};
 use nalgebra::{DMatrix, DVector};
 
-/// Difference step (dimensionless) for second derivatives.
-const DIFFERENCE: f64 = 1e-4;
-/// Second derivatives of one part along another's motion, relative to its own, up to which the parts are uncoupled.
-const COUPLED: f64 = 1e-5;
 /// Lengths of the trial steps.
 const TRIALS: [f64; 3] = [1e-3, 1e-2, 1e-4];
-/// Speeds (of unit arc length) up to this are zero.
-const STILL: f64 = 1e-7;
-/// Cosine of the largest angle to the incoming direction at which a direction counts as the incoming one.
-const SAME: f64 = 1.0 - 1e-8;
 
 /// The limit point, shared by several motions, of a step that ends past it, with their number in `motions`; `None` for
 /// any other limit point.
@@ -94,7 +88,7 @@ pub(crate) fn locate(start: &StepStart<'_>, watch: Watch, end: &Reached, work: &
     let mut point = best.filter(|point| point.corrected.residual <= ACCEPTED_RESIDUAL)?;
     let null_vectors = |state: &State| {
         let (matrix, _) = scaled_rows(&system, start.loading, state);
-        null_space_as_scaled(matrix, SINGULAR).map(|basis| basis.ncols())
+        null_space_as_scaled(matrix, SINGULAR_PIVOT).map(|basis| basis.ncols())
     };
     point.motions = null_vectors(&point.corrected.state)?;
     // A part that is merely soft compared with a stiff one is not singular: it looks the same a little before the
@@ -156,7 +150,7 @@ pub(crate) fn directions(
             }
         }
         let Some(rate) = rate.normalised() else { continue };
-        let is_own = rate.product(incoming) > SAME;
+        let is_own = rate.product(incoming) > INCOMING_COSINE;
         let rate = if is_own { incoming.clone() } else { rate };
         match tried(here, rate, chosen_modes) {
             Some(choice) if is_own => found.options.insert(0, choice),
@@ -181,7 +175,7 @@ fn tried(here: SingularPoint<'_>, rate: Rate, modes: Vec<Mode>) -> Option<Direct
         alternatives: Vec::new(),
         weak: true,
         dissipation,
-        at_hand: AtHand::default(),
+        cached: CachedFactorisation::default(),
     };
     let confirmed = |step: &f64| confirm_by(loading, state, &candidate, force_scale, &[*step]);
     let (modes, later) = TRIALS.iter().find_map(confirmed)?;
@@ -197,7 +191,7 @@ fn tried(here: SingularPoint<'_>, rate: Rate, modes: Vec<Mode>) -> Option<Direct
         is_singular: false,
         beside: None,
         is_tried: true,
-        at_hand: AtHand::default(),
+        cached: CachedFactorisation::default(),
     })
 }
 
@@ -211,11 +205,11 @@ fn parts(here: SingularPoint<'_>, modes: &[Mode], incoming: &Rate, motions: usiz
     let right = nearest_null_space(square.clone(), motions)?;
     let mut left = nearest_null_space(square.transpose(), motions)?;
     left.column_iter_mut().for_each(|mut column| column.component_div_assign(&sizes));
-    let by_load = system.matrix(state).column(load).rows(0, sizes.len()).into_owned();
+    let by_load = matrix::rate_matrix(&system, state).column(load).rows(0, sizes.len()).into_owned();
     let mut known = Vec::with_capacity(motions);
     for column in right.column_iter() {
         let values = column.into_owned().insert_row(load, 0.0);
-        let mut rate = system.rate_from(state, &values);
+        let mut rate = rate_recovery::rate_from(&system, state, &values);
         let size = rate.size();
         if size <= 0.0 {
             return None;
@@ -226,8 +220,9 @@ fn parts(here: SingularPoint<'_>, modes: &[Mode], incoming: &Rate, motions: usiz
     // For each left null vector and each pair of motions.
     let mut second = vec![DMatrix::zeros(motions, motions); motions];
     for (i, (along, _)) in known.iter().enumerate() {
-        let [ahead, behind] = [DIFFERENCE, -DIFFERENCE].map(|by| system.matrix(&state.advanced(along, by)));
-        let change: DMatrix<f64> = (ahead - behind).rows(0, sizes.len()) / (2.0 * DIFFERENCE);
+        let [ahead, behind] =
+            [DIFFERENCE_STEP, -DIFFERENCE_STEP].map(|by| matrix::rate_matrix(&system, &state.advanced(along, by)));
+        let change: DMatrix<f64> = (ahead - behind).rows(0, sizes.len()) / (2.0 * DIFFERENCE_STEP);
         for (j, (_, values)) in known.iter().enumerate() {
             let curved: DVector<f64> = &change * values;
             for (k, second) in second.iter_mut().enumerate() {
@@ -242,13 +237,13 @@ fn parts(here: SingularPoint<'_>, modes: &[Mode], incoming: &Rate, motions: usiz
         let own = (0..motions).max_by(|a, b| second[*a][(i, i)].abs().total_cmp(&second[*b][(i, i)].abs()))?;
         let value = second[own][(i, i)];
         let rest = second[own].iter().map(|other| other.abs()).sum::<f64>() - value.abs();
-        if !value.is_finite() || value == 0.0 || rest > COUPLED * value.abs() {
+        if !value.is_finite() || value == 0.0 || rest > COUPLING_TOLERANCE * value.abs() {
             return None;
         }
         let along = dot(&rate.displacement, &incoming.displacement);
         rate.scale(if along < 0.0 { -1.0 } else { 1.0 } / value.abs().sqrt());
         let slides = |contact: &usize| {
-            let moves = vector::size(&loading.relative_rate(*contact, state, &rate)) > STILL * rate.size();
+            let moves = vector::size(&loading.relative_rate(*contact, state, &rate)) > RESTING_SPEED * rate.size();
             moves && matches!(standings[*contact], Standing::OnCone { .. })
         };
         let slides = (0..modes.len()).filter(slides).collect();

@@ -16,17 +16,12 @@
 
 use crate::branching::directions::candidate::CandidateDirection;
 use crate::branching::directions::choice::DirectionChoice;
+use crate::branching::directions::tolerances::{COSINE_TOLERANCE, RESTING_SPEED};
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::dot;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
-use crate::step::corrector::cached_factorisation::AtHand;
-
-/// Two directions coincide if their product is at least one minus this.
-const SAME_WAY: f64 = 1e-9;
-
-/// Speeds (of unit arc length) up to this are zero within the accuracy with which the end of a slip is located.
-const AT_REST: f64 = 1e-9;
+use crate::step::corrector::cached_factorisation::CachedFactorisation;
 
 /// How the path arrived at a point.
 #[derive(Debug, Clone, Copy)]
@@ -38,7 +33,7 @@ pub struct Incoming<'a> {
     /// A contact whose slip would reverse if its mode continued: its speed decreases through zero at the point.
     pub stopped: Option<usize>,
     /// A factorisation of the equations of these modes near the point, if there is one.
-    pub nearby: Option<&'a AtHand>,
+    pub nearby: Option<&'a CachedFactorisation>,
     /// The equations of these modes have had a second null vector all along the incoming path.
     pub is_singular: bool,
 }
@@ -56,7 +51,7 @@ impl<'a> Incoming<'a> {
         let as_it_was = |(contact, (was, is)): (usize, (&Mode, &Mode))| match (was, is) {
             (Mode::Slip { direction }, Mode::Stick) => {
                 stops = true;
-                dot(direction, &loading.relative_rate(contact, state, self.rate)).abs() <= AT_REST
+                dot(direction, &loading.relative_rate(contact, state, self.rate)).abs() <= RESTING_SPEED
             }
             _ => was.continues(*is),
         };
@@ -73,7 +68,7 @@ impl<'a> Incoming<'a> {
             && self.stopped.is_some_and(|stopped| {
                 candidate.modes[stopped] == Mode::Stick && in_doubt().all(|(contact, _)| *contact == stopped)
             })
-            && candidate.rate.product(self.rate) > 1.0 - SAME_WAY
+            && candidate.rate.product(self.rate) > 1.0 - COSINE_TOLERANCE
     }
 }
 

@@ -1,14 +1,15 @@
 //! Directions of first order: the rate, and the contact modes compatible with it.
 
 use crate::algebra::null_space;
+use crate::branching::directions::tolerances::{MERGE_TOLERANCE, WEAK_MARGIN};
 use crate::mechanics::contact::vector::{Vector, add, size};
 use crate::mechanics::contact::{ContactPair, Mode};
-use crate::mechanics::equations::ModeSystem;
-use crate::mechanics::equations::scaled_rows::RANK;
+use crate::mechanics::equations::tolerances::RANK_TOLERANCE;
+use crate::mechanics::equations::{ModeSystem, matrix, rate_recovery};
 use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
-use crate::step::corrector::cached_factorisation::AtHand;
+use crate::step::corrector::cached_factorisation::CachedFactorisation;
 
 /// A feasible direction.
 #[derive(Debug, Clone)]
@@ -27,7 +28,7 @@ pub struct CandidateDirection {
     /// `-r_t·u̇_t` summed over the contacts.
     pub dissipation: f64,
     /// The factorisation with which the direction was found, bordered by it.
-    pub at_hand: AtHand,
+    pub cached: CachedFactorisation,
 }
 
 /// Modes of contacts that change together.
@@ -52,12 +53,6 @@ pub struct FoundDirections {
     pub corner_not_available: bool,
 }
 
-/// Inequalities (of rates of unit arc length) satisfied with a margin smaller than this are weak.
-pub(crate) const WEAK: f64 = 1e-9;
-
-/// Directions closer than this count as one.
-pub(crate) const SAME: f64 = 1e-7;
-
 /// The modes in which every contact that can change sticks, or remains closed where it has no friction.
 pub(crate) fn held_modes(loading: Loading<'_>, standings: &[Standing]) -> Vec<Mode> {
     let held = |(standing, contact): (&Standing, &ContactPair)| match standing {
@@ -74,10 +69,10 @@ pub(crate) fn resists_nothing(system: &ModeSystem<'_>, loading: Loading<'_>, sta
     if !loading.structure.allows_dense() {
         return false;
     }
-    let matrix = system.matrix(state);
-    let Some(basis) = null_space(&matrix.rows(0, system.size() - 1).into_owned(), RANK) else { return false };
+    let matrix = matrix::rate_matrix(system, state);
+    let Some(basis) = null_space(&matrix.rows(0, system.size() - 1).into_owned(), RANK_TOLERANCE) else { return false };
     basis.column_iter().any(|column| {
-        let rate = system.rate_from(state, &column.into_owned());
+        let rate = rate_recovery::rate_from(system, state, &column.into_owned());
         is_mechanism(loading, state, &rate)
     })
 }
@@ -86,16 +81,16 @@ pub(crate) fn resists_nothing(system: &ModeSystem<'_>, loading: Loading<'_>, sta
 pub fn is_mechanism(loading: Loading<'_>, state: &State, rate: &Rate) -> bool {
     let size = rate.size();
     size > 0.0
-        && rate.load.abs() < WEAK * size
-        && rate.largest_reaction() < WEAK * size
-        && loading.structure.resistance(&state.displacement, &rate.displacement) < WEAK
+        && rate.load.abs() < WEAK_MARGIN * size
+        && rate.largest_reaction() < WEAK_MARGIN * size
+        && loading.structure.resistance(&state.displacement, &rate.displacement) < WEAK_MARGIN
 }
 
 /// Adds a candidate; candidates with the same motion are merged into one entry, whatever their modes.
 pub(crate) fn merge(found: &mut FoundDirections, candidate: CandidateDirection) {
     for known in &mut found.candidates {
-        let same_motion = (1.0 - known.rate.product(&candidate.rate)) < 0.5 * SAME * SAME;
-        if same_motion && difference_of_forces(&known.forces, &candidate.forces, 1.0) <= SAME {
+        let same_motion = (1.0 - known.rate.product(&candidate.rate)) < 0.5 * MERGE_TOLERANCE * MERGE_TOLERANCE;
+        if same_motion && difference_of_forces(&known.forces, &candidate.forces, 1.0) <= MERGE_TOLERANCE {
             for (alternatives, others) in known.alternatives.iter_mut().zip(candidate.alternatives) {
                 for other in others {
                     if !alternatives.contains(&other) {

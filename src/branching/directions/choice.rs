@@ -2,13 +2,14 @@
 
 use crate::branching::directions::arrival_tangent::Incoming;
 use crate::branching::directions::candidate::difference_of_forces;
+use crate::branching::directions::tolerances::{RETRACE_FORCES, RETRACE_MOTION, STATIONARY_LOAD_RATE};
 use crate::complementarity::rate_search::branch_and_bound::Effort;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::problem::energy;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces::whole_rates;
 use crate::mechanics::problem::state::{Rate, State, dot};
-use crate::step::corrector::cached_factorisation::AtHand;
+use crate::step::corrector::cached_factorisation::CachedFactorisation;
 use serde::{Deserialize, Serialize};
 
 /// Which direction is taken where there are several. `max_dissipation`: that of largest dissipation per arc length;
@@ -47,7 +48,7 @@ pub struct DirectionChoice {
     pub is_tried: bool,
     /// Factorisation for the step along the direction.
     #[serde(skip)]
-    pub at_hand: AtHand,
+    pub cached: CachedFactorisation,
 }
 
 /// Motion of the path before the point.
@@ -57,16 +58,6 @@ pub enum PriorMotion<'a> {
     /// A stage begins: the load is to rise; ties go to the motion in the direction of the load pattern.
     StageStart,
 }
-
-/// Load rates (of unit arc length) below this count as zero.
-pub const STATIONARY: f64 = 1e-9;
-
-/// Largest difference (of unit arc length) from the reversed incoming direction at which a direction may retrace the
-/// path.
-pub(crate) const BACK: f64 = 4e-5;
-
-/// The same for the forces on the nodes, relative to the largest.
-pub(crate) const BACK_FORCES: f64 = 1e-4;
 
 /// Settings and scales of a decision.
 #[derive(Debug, Clone, Copy)]
@@ -98,7 +89,7 @@ pub fn potential_rate(loading: Loading<'_>, state: &State, rate: &Rate, dissipat
 
 /// The sign of a load rate; 0 where it is stationary.
 pub fn sign_of(load: f64) -> f64 {
-    if load.abs() <= STATIONARY { 0.0 } else { load.signum() }
+    if load.abs() <= STATIONARY_LOAD_RATE { 0.0 } else { load.signum() }
 }
 
 /// Distance of a direction from the reversed incoming one, forces on the nodes included; `None` where it is another
@@ -106,12 +97,12 @@ pub fn sign_of(load: f64) -> f64 {
 pub(crate) fn off_reverse(loading: Loading<'_>, state: &State, rate: &Rate, incoming: &Rate) -> Option<f64> {
     let sums = rate.displacement.iter().zip(&incoming.displacement).map(|(a, b)| a + b);
     let motion = sums.chain(std::iter::once(rate.load + incoming.load)).map(|sum| sum * sum).sum::<f64>().sqrt();
-    if motion > BACK {
+    if motion > RETRACE_MOTION {
         return None;
     }
     let [own, other] = [rate, incoming].map(|rate| whole_rates(loading, state, rate));
     let forces = difference_of_forces(&own, &other, -1.0);
-    (forces <= BACK_FORCES).then(|| motion.max(forces))
+    (forces <= RETRACE_FORCES).then(|| motion.max(forces))
 }
 
 /// Whether two or more directions share the sign of the load rate. `taken_sign` replaces the sign of the direction

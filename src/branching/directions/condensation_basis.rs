@@ -14,23 +14,15 @@ use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::preconditioned_refinement::Nearby;
 use crate::algebra::{Factorisation, SystemFactorisation, null_space};
 use crate::branching::directions::arrival_tangent::Incoming;
+use crate::branching::directions::tolerances::{ACCEPTED_BACKWARD_ERROR, SMALLEST_SPANNING_PIVOT, TANGENTIAL_COSINE};
 use crate::mechanics::contact::Reaction;
 use crate::mechanics::contact::vector::{Vector, dot};
-use crate::mechanics::equations::scaled_rows::RANK;
-use crate::mechanics::equations::{Kind, ModeSystem, Role};
+use crate::mechanics::equations::tolerances::RANK_TOLERANCE;
+use crate::mechanics::equations::{Kind, ModeSystem, Role, factorisation, matrix, rate_recovery};
 use crate::mechanics::multi_contact::rate_options::contact_options::Changeable;
 use crate::mechanics::problem::state::Rate;
 use crate::resources::budget;
 use nalgebra::{DMatrix, DVector};
-
-/// Largest cosine of the angle with a normal at which a direction counts as tangential.
-const ACROSS: f64 = 1e-12;
-/// Accepted backward error of the solutions combined into columns, the same as with a factorisation of their own: on a
-/// lattice of 102,304 unknowns the rates are accurate to about 2e-9.
-const ACCEPTED: f64 = 1e-11;
-/// Smallest pivot of the matrix of velocities and loads of the solutions (entries of about 1) at which they span the
-/// space.
-const SPANS: f64 = 1e-3;
 
 /// The velocities of all contacts that can change: the contact and the direction of each.
 fn velocities(changeable: &[Changeable]) -> impl Iterator<Item = (usize, &Vector)> {
@@ -55,10 +47,10 @@ fn columns_held(equations: &ModeSystem<'_>, changeable: &[Changeable], incoming:
     let solved = |mut values: DVector<f64>| {
         budget::spend(equations.size);
         let is_solved = factorisation.solve(&mut values);
-        is_solved.then(|| equations.rate_from(equations.anchor, &values))
+        is_solved.then(|| rate_recovery::rate_from(equations, equations.anchor, &values))
     };
     let rights = velocities(changeable).map(|(contact, direction)| moving(equations, contact, direction));
-    rights.chain(std::iter::once_with(|| equations.bordering())).map(solved).collect()
+    rights.chain(std::iter::once_with(|| rate_recovery::bordering(equations))).map(solved).collect()
 }
 
 /// The right-hand side for a unit motion of the node of a closed contact along a direction, in the directions that the
@@ -78,19 +70,19 @@ pub(crate) fn moving(equations: &ModeSystem<'_>, contact: usize, direction: &Vec
 fn bordered_somehow(equations: &ModeSystem<'_>, incoming: Option<&Rate>) -> Option<SystemFactorisation> {
     let iterate = equations.iterate(equations.anchor.clone());
     let by_load = |matrix: &mut dyn Sink| matrix.add(equations.size - 1, equations.loading.structure.unknowns(), 1.0);
-    if let Some(factorisation) = equations.factorise(&iterate, Kind::Rates, by_load) {
+    if let Some(factorisation) = factorisation::factorise(equations, &iterate, Kind::Rates, by_load) {
         return Some(factorisation);
     }
     if let Some(rate) = incoming
-        && let Some(factorisation) = equations.bordered(&iterate, rate)
+        && let Some(factorisation) = factorisation::factorise_bordered(equations, &iterate, rate)
     {
         return Some(factorisation);
     }
     if !equations.loading.structure.allows_dense() {
         return None;
     }
-    let matrix = equations.matrix(equations.anchor);
-    let basis = null_space(&matrix.rows(0, equations.size - 1).into_owned(), RANK)?;
+    let matrix = matrix::rate_matrix(equations, equations.anchor);
+    let basis = null_space(&matrix.rows(0, equations.size - 1).into_owned(), RANK_TOLERANCE)?;
     if basis.ncols() != 1 {
         return None;
     }
@@ -116,7 +108,7 @@ fn columns_nearby(equations: &ModeSystem<'_>, changeable: &[Changeable], incomin
     }
     let system = ModeSystem::new(loading, modes, state);
     let iterate = system.iterate(state.clone());
-    let nearby = Nearby::new(nearby, system.assemble_sparse(&iterate, Kind::Rates)?)?;
+    let nearby = Nearby::new(nearby, matrix::assemble_sparse(&system, &iterate, Kind::Rates)?)?;
     let velocities: Vec<(usize, &Vector)> = velocities(changeable).collect();
     // The right-hand sides, their solutions, and the rates.
     let _held = budget::take::<f64>((velocities.len() + 1) * (5 * system.size + 4 * loading.contacts.len()));
@@ -126,10 +118,10 @@ fn columns_nearby(equations: &ModeSystem<'_>, changeable: &[Changeable], incomin
         let right = if is_held { moving(&system, *contact, direction) } else { pushed(&system, *contact, direction) };
         rights.extend_from_slice(right.as_slice());
     }
-    let solved = nearby.solve_all(&rights, ACCEPTED)?;
+    let solved = nearby.solve_all(&rights, ACCEPTED_BACKWARD_ERROR)?;
     let mut solutions = Vec::with_capacity(velocities.len() + 1);
     for ((contact, direction), values) in velocities.iter().zip(solved.chunks_exact(system.size)) {
-        let mut rate = system.rate_at(&iterate, &DVector::from_column_slice(values), Kind::Rates);
+        let mut rate = rate_recovery::rate_at(&system, &iterate, &DVector::from_column_slice(values), Kind::Rates);
         if holds(&system, *contact, direction) == Some(false) {
             rate.reactions[*contact].add(1.0, &Reaction::of(direction, &loading.frame(*contact, state).normal));
         }
@@ -158,7 +150,7 @@ fn holds(equations: &ModeSystem<'_>, contact: usize, direction: &Vector) -> Opti
         Role::Frictionless | Role::Line { .. } => {
             let normal = equations.loading.frame(contact, equations.anchor).normal;
             let is_normal = *direction == normal;
-            (is_normal || dot(direction, &normal).abs() <= ACROSS).then_some(is_normal)
+            (is_normal || dot(direction, &normal).abs() <= TANGENTIAL_COSINE).then_some(is_normal)
         }
         Role::Edge { .. } | Role::Plane { .. } | Role::Held | Role::HeldBy => None,
     }
@@ -195,7 +187,7 @@ fn combined(equations: &ModeSystem<'_>, velocities: &[(usize, &Vector)], solutio
         return None;
     }
     parts.row_iter_mut().zip(&sizes).for_each(|(mut row, size)| row /= *size);
-    let factorisation = Factorisation::new(parts).filter(|parts| parts.pivot_ratio() >= SPANS)?;
+    let factorisation = Factorisation::new(parts).filter(|parts| parts.pivot_ratio() >= SMALLEST_SPANNING_PIVOT)?;
     let column = |(index, size): (usize, &f64)| {
         let mut weights = DVector::zeros(count);
         weights[index] = 1.0 / size;
@@ -203,7 +195,7 @@ fn combined(equations: &ModeSystem<'_>, velocities: &[(usize, &Vector)], solutio
             return None;
         }
         budget::spend(count * equations.size);
-        let mut rate = equations.no_rate();
+        let mut rate = rate_recovery::no_rate(equations);
         solutions.iter().zip(weights.iter()).for_each(|(solution, weight)| rate.add(solution, *weight));
         Some(rate)
     };
@@ -220,7 +212,7 @@ mod tests {
     use crate::continuation::scene::Scene;
     use crate::mechanics::multi_contact::contact_status::Standing;
     use crate::resources::cancel::CancelFlag;
-    use crate::step::corrector::cached_factorisation::AtHand;
+    use crate::step::corrector::cached_factorisation::CachedFactorisation;
     use crate::step::corrector::cost_counters::Work;
     use crate::step::segment::StepStart;
 
@@ -260,11 +252,10 @@ mod tests {
                 if start.reach_by(state.clone(), 1e-6, &mut serving, &mut work).is_err() {
                     continue;
                 }
-                let nearby = AtHand::shared(serving.as_ref());
+                let nearby = CachedFactorisation::shared(serving.as_ref());
                 let came = ModeSystem::new(loading, &arriving.modes, state);
-                let Some(incoming) = came
-                    .bordered(&came.iterate(state.clone()), rate)
-                    .and_then(|bordered| came.tangent_by(&bordered, &came.iterate(state.clone())))
+                let Some(incoming) = factorisation::factorise_bordered(&came, &came.iterate(state.clone()), rate)
+                    .and_then(|bordered| rate_recovery::tangent_by(&came, &bordered, &came.iterate(state.clone())))
                 else {
                     continue;
                 };

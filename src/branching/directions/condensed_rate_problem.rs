@@ -7,9 +7,10 @@
 
 use crate::branching::directions::arrival_tangent::Incoming;
 use crate::branching::directions::candidate::{
-    Alternative, CandidateDirection, FoundDirections, WEAK, is_mechanism, merge, sort,
+    Alternative, CandidateDirection, FoundDirections, is_mechanism, merge, sort,
 };
 use crate::branching::directions::condensation_basis;
+use crate::branching::directions::tolerances::WEAK_MARGIN;
 use crate::complementarity::rate_search::branch_and_bound::{self, Effort, Ray};
 use crate::complementarity::rate_search::simultaneous_slips;
 use crate::complementarity::rate_search::slip_onset_direction::{self, Touch, Turning};
@@ -24,7 +25,7 @@ use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces::whole_rates;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::budget::{self, Taken};
-use crate::step::corrector::cached_factorisation::AtHand;
+use crate::step::corrector::cached_factorisation::CachedFactorisation;
 use nalgebra::{DMatrix, DVector};
 
 /// Largest number of contacts for which the search needs no starting guess, and slips of unknown direction are sought
@@ -139,7 +140,7 @@ impl<'a> Condensed<'a> {
                 found.unexplored = found.unexplored.saturating_add(found.slips_in_doubt);
             }
         }
-        self.add_slips_out_of_pockets(held, state, effort, found);
+        self.add_slips_out_of_groups(held, state, effort, found);
         for slip in &turning {
             let directions: Vec<(usize, Vector)> = slip
                 .slips
@@ -155,7 +156,7 @@ impl<'a> Condensed<'a> {
     }
 
     /// Adds slips of an unloaded node out of a corner, which begin along one of its obstacles in an unknown direction.
-    fn add_slips_out_of_pockets(&self, held: &[Mode], state: &State, effort: Effort<'_>, found: &mut FoundDirections) {
+    fn add_slips_out_of_groups(&self, held: &[Mode], state: &State, effort: Effort<'_>, found: &mut FoundDirections) {
         let normals = |contact: usize| self.loading.frame(contact, state).normal;
         let mut forms = Forms {
             columns: &self.columns,
@@ -166,7 +167,7 @@ impl<'a> Condensed<'a> {
         };
         let mut touches = Vec::new();
         for (entity, entry) in self.changeable.iter().enumerate() {
-            touches.extend(entry.touches_in_pocket(entity, &mut forms));
+            touches.extend(entry.touches_in_group(entity, &mut forms));
         }
         if touches.is_empty() {
             return;
@@ -205,7 +206,7 @@ impl<'a> Condensed<'a> {
             let mut rest = motion.clone();
             basis.iter().for_each(|known| rest.add(known, -known.product(&rest)));
             let size = rest.size();
-            if size > WEAK {
+            if size > WEAK_MARGIN {
                 rest.scale(1.0 / size);
                 basis.push(rest);
             }
@@ -218,9 +219,9 @@ impl<'a> Condensed<'a> {
         let opens = |entry: &Changeable| {
             let contact = entry.contacts[0];
             dot(&self.loading.frame(contact, state).normal, &self.loading.relative_rate(contact, state, &nearest))
-                >= -WEAK
+                >= -WEAK_MARGIN
         };
-        if size <= WEAK || !self.changeable.iter().all(opens) {
+        if size <= WEAK_MARGIN || !self.changeable.iter().all(opens) {
             return;
         }
         nearest.scale(1.0 / size);
@@ -237,7 +238,7 @@ impl<'a> Condensed<'a> {
                 alternatives,
                 weak: true,
                 dissipation,
-                at_hand: AtHand::default(),
+                cached: CachedFactorisation::default(),
             },
         );
     }
@@ -290,7 +291,7 @@ impl<'a> Condensed<'a> {
             }
         }
         self.changeable.iter().for_each(|entry| entry.move_to_slider(self.loading, &modes, &mut rate, state));
-        let force = WEAK * rate.largest_reaction().max(f64::MIN_POSITIVE);
+        let force = WEAK_MARGIN * rate.largest_reaction().max(f64::MIN_POSITIVE);
         if !self.changeable.iter().all(|entry| entry.is_in_cone(self.loading, &modes, &rate, force)) {
             return;
         }
@@ -302,7 +303,15 @@ impl<'a> Condensed<'a> {
         let weak = ray.weak || self.changeable.iter().any(just_held);
         merge(
             found,
-            CandidateDirection { rate, forces, modes, alternatives, weak, dissipation, at_hand: AtHand::default() },
+            CandidateDirection {
+                rate,
+                forces,
+                modes,
+                alternatives,
+                weak,
+                dissipation,
+                cached: CachedFactorisation::default(),
+            },
         );
     }
 
@@ -351,7 +360,7 @@ impl<'a> Condensed<'a> {
             rate.reactions.iter_mut().zip(&column.reactions).for_each(|(sum, value)| sum.add(*weight, value));
         }
         let size = rate.size();
-        if size > WEAK * rate.largest_reaction() {
+        if size > WEAK_MARGIN * rate.largest_reaction() {
             rate.scale(1.0 / size);
             (rate, weights / size)
         } else {

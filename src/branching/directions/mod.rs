@@ -14,4 +14,5 @@ pub(crate) mod candidate;
 pub(crate) mod choice;
 pub(crate) mod condensation_basis;
 pub(crate) mod condensed_rate_problem;
+pub(crate) mod tolerances;
 pub(crate) mod trial_step;

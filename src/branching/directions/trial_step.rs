@@ -8,13 +8,17 @@
 
 use crate::branching::directions::candidate::CandidateDirection;
 use crate::branching::directions::choice::sign_of;
+use crate::branching::directions::tolerances::{
+    CLEAR_SLOPE, FIRST_ORDER_TOLERANCE, FORCE_RATE_ROUNDING, LOAD_RATE_ROUNDING, RELATIVE_SPEED_ROUNDING,
+    ROUNDINGS_PER_ENTRY, SPEED_ROUNDING, STEADY_RATE_CHANGE, TRIAL_VIOLATION,
+};
 use crate::complementarity::rates::combinations;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::size as size_of;
-use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::closing_equation::ArcLengthEquation;
 use crate::mechanics::equations::scaled_rows::scaled_rows;
 use crate::mechanics::equations::solution::Corrected;
+use crate::mechanics::equations::{ModeSystem, matrix, rate_recovery};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::budget::{self, Taken};
@@ -28,25 +32,6 @@ use std::collections::BTreeSet;
 
 /// Arc lengths of the trial steps for a direction of first order, tried one after another until the outcome is clear.
 const TRIAL_STEPS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
-/// Quantities and slopes below this are zero at first order.
-const IN_DOUBT: f64 = 1e-8;
-/// After a trial step, slopes of forces above this, relative to the contact's own forces, have a sign ...
-const CLEAR: f64 = 1e-9;
-/// ... but no smaller than their round-off relative to the largest force.
-const CLEAR_OF_ROUND_OFF: f64 = 5e-14;
-/// The same for velocities, relative to the node's own: a smaller one leaves the gap within round-off over the whole
-/// path.
-const CLEAR_OF_SPEED: f64 = 1e-13;
-/// Round-off of a velocity (of unit arc length).
-const STILL: f64 = 1e-14;
-/// Load rates (of unit arc length) up to this are round-off unless a smaller bound is known.
-const NO_LOAD_RATE: f64 = 1e-12;
-/// Number of round-off errors assumed in each entry of the equations and of their solution.
-const ROUNDINGS: f64 = 8.0;
-/// Load rates whose relative difference is no larger than this are alike.
-const ALIKE: f64 = 0.5;
-/// Largest negative value of a watched quantity after a trial step (a true violation is of second order in the step).
-const TRIAL_TOLERANCE: f64 = 1e-11;
 /// Largest number of combinations that are tried in turn.
 const MOST_COMBINATIONS: u64 = 64;
 
@@ -127,9 +112,9 @@ pub(crate) fn later_sign(
 ) -> LaterSign {
     let is_more_than_rounding = || {
         let rounding = rounding_of_load_rate(loading, state, rate, modes).unwrap_or(f64::INFINITY);
-        rate.load.abs() > rounding.min(NO_LOAD_RATE)
+        rate.load.abs() > rounding.min(LOAD_RATE_ROUNDING)
     };
-    let mut is_steady = rate.load.abs() > NO_LOAD_RATE || rate.load != 0.0 && is_more_than_rounding();
+    let mut is_steady = rate.load.abs() > LOAD_RATE_ROUNDING || rate.load != 0.0 && is_more_than_rounding();
     for step in TRIAL_STEPS {
         let Some((_, after)) = stepped(loading, state, rate, modes, step, force_scale) else {
             is_steady = false;
@@ -138,7 +123,7 @@ pub(crate) fn later_sign(
         if sign_of(after.load) != 0.0 {
             return LaterSign { sign: sign_of(after.load), is_steady: false };
         }
-        is_steady &= (after.load - rate.load).abs() <= ALIKE * rate.load.abs();
+        is_steady &= (after.load - rate.load).abs() <= STEADY_RATE_CHANGE * rate.load.abs();
     }
     LaterSign { sign: if is_steady { rate.load.signum() } else { 0.0 }, is_steady }
 }
@@ -154,12 +139,12 @@ fn rounding_of_load_rate(loading: Loading<'_>, state: &State, rate: &Rate, modes
     let system = ModeSystem::new(loading, modes, state);
     let (rows, _) = scaled_rows(&system, loading, state);
     let mut matrix = rows.insert_row(system.size() - 1, 0.0);
-    system.border(&mut matrix, rate);
+    matrix::border(&system, &mut matrix, rate);
     let (size, load) = (matrix.nrows(), loading.structure.unknowns());
     let unit = |place: usize| DVector::from_fn(size, |row, _| f64::from(u8::from(row == place)));
     let along = matrix.clone().lu().solve(&unit(size - 1))?;
     let weights = matrix.transpose().lu().solve(&unit(load))?;
-    let rounding = ROUNDINGS * f64::EPSILON * weights.lp_norm(1) * along.lp_norm(1);
+    let rounding = ROUNDINGS_PER_ENTRY * f64::EPSILON * weights.lp_norm(1) * along.lp_norm(1);
     rounding.is_finite().then_some(rounding)
 }
 
@@ -182,7 +167,7 @@ fn stepped(
     may_turn(state.cosine_of_chord(&corrected.state, distance, rate)).ok()?;
     let rate = match serving {
         Some(_) => tangent::tangent_and_error(&system, &corrected, rate, &mut serving, &mut 0)?.rate,
-        None => system.tangent(&corrected, rate)?,
+        None => rate_recovery::tangent(&system, &corrected, rate)?,
     };
     Some((corrected, rate))
 }
@@ -245,14 +230,14 @@ impl Trial<'_> {
             let first = watch.value(loading, modes, state, &candidate.rate);
             let tendency = watch.slope(loading, modes, state, &candidate.rate);
             let most = if watch.is_of_forces() { rates } else { 1.0 };
-            if tendency.is_some_and(|slope| slope > IN_DOUBT * most)
-                || watch.is_above_zero(loading, state, first, IN_DOUBT, forces)
+            if tendency.is_some_and(|slope| slope > FIRST_ORDER_TOLERANCE * most)
+                || watch.is_above_zero(loading, state, first, FIRST_ORDER_TOLERANCE, forces)
             {
                 continue;
             }
             let scale = watch.scale(loading, &corrected.state, forces);
             let size = if tendency.is_some() && watch.is_of_forces() { rates * (scale / forces) } else { 1.0 };
-            if tendency.is_some_and(|slope| slope > IN_DOUBT * size) {
+            if tendency.is_some_and(|slope| slope > FIRST_ORDER_TOLERANCE * size) {
                 continue;
             }
             let last = watch.value(loading, modes, &corrected.state, &rate) / scale;
@@ -260,18 +245,19 @@ impl Trial<'_> {
             let clear = match watch {
                 // A node on a stiff spring moves slowly, but its direction is just as clear.
                 Watch::Gap(contact) | Watch::Sliding(contact) => {
-                    STILL + CLEAR_OF_SPEED * size_of(&loading.relative_rate(contact, &corrected.state, &rate))
+                    SPEED_ROUNDING
+                        + RELATIVE_SPEED_ROUNDING * size_of(&loading.relative_rate(contact, &corrected.state, &rate))
                 }
                 // Relative to the contact's own forces: along a chain close to jamming they decrease by orders of
                 // magnitude between nodes.
                 Watch::Normal(contact) | Watch::Cone { contact, .. } => {
                     let own = candidate.rate.reactions[contact].size().max(rate.reactions[contact].size());
-                    (CLEAR * own / size).max(CLEAR_OF_ROUND_OFF)
+                    (CLEAR_SLOPE * own / size).max(FORCE_RATE_ROUNDING)
                 }
-                Watch::Facet { .. } | Watch::Slide { .. } | Watch::Hold { .. } | Watch::Return { .. } => CLEAR,
-                Watch::LoadRate { .. } | Watch::End(_) => CLEAR,
+                Watch::Facet { .. } | Watch::Slide { .. } | Watch::Hold { .. } | Watch::Return { .. } => CLEAR_SLOPE,
+                Watch::LoadRate { .. } | Watch::End(_) => CLEAR_SLOPE,
             };
-            if last < -TRIAL_TOLERANCE || grown < -clear {
+            if last < -TRIAL_VIOLATION || grown < -clear {
                 culprits.extend(contacts_of(loading, watch));
             }
             unclear |= grown <= clear;

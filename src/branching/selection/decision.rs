@@ -18,12 +18,13 @@ use crate::branching::directions::choice::{
 use crate::branching::directions::trial_step::confirm;
 use crate::branching::selection::enumeration::directions;
 use crate::branching::selection::second_order;
+use crate::branching::selection::tolerances::{DISSIPATION_TIE_TOLERANCE, MOTION_TIE_TOLERANCE, RESTING_MOTION};
 use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::mechanics::problem::linearity;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State, dot};
 use crate::result::stop_reason::StopReason;
-use crate::step::corrector::cached_factorisation::AtHand;
+use crate::step::corrector::cached_factorisation::CachedFactorisation;
 
 /// The directions at a point and the one taken.
 #[derive(Debug, Clone)]
@@ -36,16 +37,6 @@ pub struct Decision {
     pub unexplored: u64,
     pub degenerate: bool,
 }
-
-/// Dissipations closer than this, relative to the largest force, tie.
-const TIE: f64 = 1e-8;
-
-/// Displacement rates whose components along the incoming one differ by less than this part of their sizes tie.
-const TIE_OF_MOTIONS: f64 = 1e-9;
-/// Displacement rates below this part of a direction count as zero: where nothing moves, the location of the event
-/// before the point, or the differences of the tangent that determine a direction at a fold, leave a remainder of this
-/// size. Its direction depends on units, axes and steps.
-const STILL: f64 = 1e-9;
 
 /// Lists the directions at a point.
 pub fn list(
@@ -72,7 +63,7 @@ pub fn list(
             Some((candidate.modes.clone(), 0.0))
         };
         let Some((modes, later_load)) = confirmed else { continue };
-        let at_hand = if modes == candidate.modes { candidate.at_hand } else { AtHand::default() };
+        let cached = if modes == candidate.modes { candidate.cached } else { CachedFactorisation::default() };
         let load_sign = sign_of(if sign_of(candidate.rate.load) == 0.0 { later_load } else { candidate.rate.load });
         let potential_rate = potential_rate(loading, state, &candidate.rate, candidate.dissipation);
         options.push(DirectionChoice {
@@ -86,7 +77,7 @@ pub fn list(
             is_singular: false,
             beside: None,
             is_tried: candidate.weak,
-            at_hand,
+            cached,
         });
     }
     if let Some(incoming) = incoming {
@@ -184,7 +175,7 @@ fn is_preferred(first: &DirectionChoice, second: &DirectionChoice, previous: &Ra
                 Selection::MinPotentialEnergy => second.potential_rate - first.potential_rate,
                 Selection::MaxDissipation | Selection::Straightest => first.dissipation - second.dissipation,
             };
-            if difference.abs() > TIE * rules.force_scale {
+            if difference.abs() > DISSIPATION_TIE_TOLERANCE * rules.force_scale {
                 difference > 0.0
             } else {
                 is_straighter(first, second, previous, false)
@@ -198,7 +189,7 @@ fn is_preferred(first: &DirectionChoice, second: &DirectionChoice, previous: &Ra
 fn is_straighter(first: &DirectionChoice, second: &DirectionChoice, previous: &Rate, by_cosine: bool) -> bool {
     let size = |rate: &Rate| {
         let size = dot(&rate.displacement, &rate.displacement).sqrt();
-        if size > STILL * rate.size() { size } else { 0.0 }
+        if size > RESTING_MOTION * rate.size() { size } else { 0.0 }
     };
     let before = size(previous);
     let sizes = [first, second].map(|choice| size(&choice.rate));
@@ -208,7 +199,7 @@ fn is_straighter(first: &DirectionChoice, second: &DirectionChoice, previous: &R
         if by_cosine && size > 0.0 { product / size } else { product }
     };
     let difference = along(first, sizes[0]) - along(second, sizes[1]);
-    if before > 0.0 && difference.abs() > TIE_OF_MOTIONS * largest * before {
+    if before > 0.0 && difference.abs() > MOTION_TIE_TOLERANCE * largest * before {
         return difference > 0.0;
     }
     let goes_on = |choice: &DirectionChoice| choice.load_sign * previous.load > 0.0;
@@ -235,7 +226,7 @@ mod tests {
             is_singular: false,
             beside: None,
             is_tried: false,
-            at_hand: AtHand::default(),
+            cached: CachedFactorisation::default(),
         }
     }
 

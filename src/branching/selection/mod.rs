@@ -9,3 +9,4 @@
 pub(crate) mod decision;
 pub(crate) mod enumeration;
 pub(crate) mod second_order;
+pub(crate) mod tolerances;

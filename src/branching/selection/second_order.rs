@@ -5,7 +5,8 @@
 //! cone is zero at first order, and where no other force changes either, round-off makes it nonzero. A short step
 //! decides where the path bends little (`trial_step`), but not where a part attached to the contact is at its fold.
 
-use crate::branching::bifurcation::branch_directions::{SAME, SecondOrderFindings, SingularPoint, in_each_mode};
+use crate::branching::bifurcation::branch_directions::tolerances::COINCIDENCE_COSINE;
+use crate::branching::bifurcation::branch_directions::{SecondOrderFindings, SingularPoint, in_each_mode};
 use crate::branching::directions::choice::{DirectionChoice, PriorMotion, mark_retrace, sign_of};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
@@ -34,7 +35,7 @@ pub(crate) fn directions(here: SingularPoint<'_>, before: PriorMotion<'_>) -> Op
         // Where the load turns, the load falls along the reverse as it does ahead: the reverse does not count as
         // another direction.
         let goes_back = |option: &&mut DirectionChoice| {
-            option.rate.product(incoming.rate) < -SAME && sign_of(option.rate.load) == 0.0
+            option.rate.product(incoming.rate) < -COINCIDENCE_COSINE && sign_of(option.rate.load) == 0.0
         };
         options.iter_mut().filter(goes_back).for_each(|option| option.load_sign = 0.0);
         // Of two directions that differ in nothing else, the one that bends towards the incoming side comes first.

@@ -37,6 +37,7 @@ pub mod settings;
 pub mod smooth_program;
 pub(crate) mod solver;
 pub(crate) mod stationarity;
+pub(crate) mod tolerances;
 pub(crate) mod unboundedness;
 
 pub use crate::complementarity::mpec::program::counts::{SolverCounts, SolverIterate};

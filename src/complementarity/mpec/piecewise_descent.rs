@@ -8,6 +8,9 @@
 //! Source: the piecewise programming of Z.-Q. Luo, J.-S. Pang and D. Ralph, *Mathematical Programs with Equilibrium
 //! Constraints* (Cambridge University Press, 1996), doi:10.1017/CBO9780511983658.
 
+use crate::complementarity::mpec::tolerances::{
+    BIACTIVE_ROUND_OFF, CLEAR_PATTERN_RATIO, SMALLEST_DECREASE, VIOLATION_MULTIPLE,
+};
 use nalgebra::DVector;
 
 use crate::complementarity::mpec::program::cone;
@@ -22,15 +25,6 @@ use crate::complementarity::mpec::smooth_program::relaxation::{Multipliers, Smoo
 use crate::complementarity::mpec::smooth_program::sqp::{self, SqpEnd, SqpOutcome, SqpSettings};
 use crate::complementarity::mpec::stationarity::{self, NoVerdict};
 use crate::resources::cancel::CancelFlag;
-
-/// A pair whose smaller member is less than this fraction of the larger has a clear pattern.
-const CLEAR_RATIO: f64 = 0.05;
-/// Magnitude up to which both members of a pair at a converged point are zero to rounding.
-const BOTH_ZERO: f64 = 1e-11;
-/// Multiple of the violation at a settled point up to which members may be zero.
-const LEEWAY: f64 = 10.0;
-/// Decrease of the objective that justifies another branch, relative to `1 + |f|`.
-const WORTHWHILE: f64 = 1e-10;
 
 /// Largest number of pairs whose branches are all tried before a problem is called infeasible, whatever the settings.
 const ENUMERATION_CEILING: usize = 10;
@@ -117,8 +111,11 @@ pub fn patterns_around(at: &ProgramEvaluation, limit: usize) -> Vec<TreatmentPat
 /// complementary.
 pub fn is_clear(at: &ProgramEvaluation) -> bool {
     let largest = |v: &[f64]| v.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-    at.first.iter().zip(at.second.iter()).all(|(a, b)| a.min(*b) <= CLEAR_RATIO * a.max(*b))
-        && at.cones.pairs().all(|(a, b)| cone::natural_residual(a, b) <= CLEAR_RATIO * largest(a).max(largest(b)))
+    at.first.iter().zip(at.second.iter()).all(|(a, b)| a.min(*b) <= CLEAR_PATTERN_RATIO * a.max(*b))
+        && at
+            .cones
+            .pairs()
+            .all(|(a, b)| cone::natural_residual(a, b) <= CLEAR_PATTERN_RATIO * largest(a).max(largest(b)))
 }
 
 /// Solves the branch `pattern` from `start` and follows descent into neighbouring branches. The candidate's end states
@@ -152,7 +149,7 @@ pub fn descend<P: Problem + ?Sized>(
         };
         let improves = best.as_ref().is_none_or(|best| {
             candidate.is_feasible(settings.tolerance)
-                && candidate.at.objective < best.at.objective - WORTHWHILE * (1.0 + best.at.objective.abs())
+                && candidate.at.objective < best.at.objective - SMALLEST_DECREASE * (1.0 + best.at.objective.abs())
         });
         let stopped = matches!(candidate.end, SqpEnd::Cancelled | SqpEnd::NotFinite(_));
         if !improves {
@@ -194,7 +191,7 @@ pub fn descend<P: Problem + ?Sized>(
 /// Magnitude up to which both members of a pair at a settled point may be zero: the remaining violation indicates how
 /// far they may still change.
 fn uncertain(at: &ProgramEvaluation, settings: &Settings) -> f64 {
-    settings.biactive_tolerance.max(LEEWAY * at.largest_violation())
+    settings.biactive_tolerance.max(VIOLATION_MULTIPLE * at.largest_violation())
 }
 
 /// Solves the branch `pattern` from `start` without changing to another branch. The candidate is settled or stationary
@@ -229,7 +226,7 @@ pub fn follow<P: Problem + ?Sized>(
         let members = outcome.at.first.iter().zip(outcome.at.second.iter());
         let may_leave = pairs
             .zip(members)
-            .any(|((of_first, of_second), (a, b))| a.max(*b) <= BOTH_ZERO && of_first.min(*of_second) < least);
+            .any(|((of_first, of_second), (a, b))| a.max(*b) <= BIACTIVE_ROUND_OFF && of_first.min(*of_second) < least);
         let stationarity = match (outcome.end == SqpEnd::Converged && !steps.is_bound(), may_leave) {
             (true, false) => StationarityKind::Strong,
             (true, true) => StationarityKind::OneBranch,

@@ -17,6 +17,7 @@
 //! derivatives); L. Qi and J. Sun, *A nonsmooth version of Newton's method*, Math. Program. 58 (1993),
 //! doi:10.1007/BF01581275 (convergence).
 
+use crate::complementarity::mpec::tolerances::{ACCEPTED_RESIDUAL, ATTAINABLE_RESIDUAL, RANK_TOLERANCE};
 use nalgebra::{DMatrix, DVector};
 
 use crate::algebra::Factorisation;
@@ -32,12 +33,6 @@ const HALVINGS: usize = 12;
 /// Number of full steps taken although no fraction of them reduces the residual: where a pair changes its zero member,
 /// the residual may have to grow on the way to the solution.
 const WATCHDOG_STEPS: usize = 3;
-/// Residual up to which the system counts as converged.
-const CONVERGED: f64 = 1e-11;
-/// Residual below which further iterations gain nothing.
-const ROUND_OFF: f64 = 1e-15;
-/// Singular values below this fraction of the largest count as zero.
-const RANK: f64 = 1e-11;
 /// Largest number of sweeps of the singular value decomposition.
 const SWEEPS: usize = 1000;
 
@@ -82,14 +77,14 @@ pub fn polish<P: Problem + ?Sized>(
     let mut watchdog_steps = WATCHDOG_STEPS;
     for _ in 0..MOST_ITERATIONS {
         let size = values.amax();
-        if cancel.is_cancelled() || size <= ROUND_OFF || at.update_derivatives(problem, &x).is_err() {
+        if cancel.is_cancelled() || size <= ATTAINABLE_RESIDUAL || at.update_derivatives(problem, &x).is_err() {
             break;
         }
         let Some(step) = newton_step(jacobian(&at, &x, closing), &values) else { break };
         let (next, next_values) = match shortened(problem, &mut at, &x, &step, &values, closing) {
             Some(better) => better,
             // Below the convergence tolerance, a step without progress is round-off.
-            None if size <= CONVERGED || watchdog_steps == 0 => break,
+            None if size <= ACCEPTED_RESIDUAL || watchdog_steps == 0 => break,
             None => {
                 watchdog_steps -= 1;
                 let trial = &x + step;
@@ -110,7 +105,7 @@ pub fn polish<P: Problem + ?Sized>(
             best = (values.amax(), x.clone());
         }
     }
-    Ok(Polished { x: best.1, is_converged: best.0 <= CONVERGED, residuals })
+    Ok(Polished { x: best.1, is_converged: best.0 <= ACCEPTED_RESIDUAL, residuals })
 }
 
 /// The first point after `step`, `step/2`, ... with a smaller residual, and the residual; `at` then has the values at
@@ -196,7 +191,7 @@ fn newton_step(matrix: DMatrix<f64>, values: &DVector<f64>) -> Option<DVector<f6
         return None;
     }
     let decomposition = matrix.try_svd(true, true, f64::EPSILON, SWEEPS)?;
-    let cutoff = RANK * decomposition.singular_values.amax();
+    let cutoff = RANK_TOLERANCE * decomposition.singular_values.amax();
     let step = decomposition.solve(&right, cutoff).ok()?;
     step.iter().all(|value| value.is_finite()).then_some(step)
 }

@@ -12,6 +12,7 @@
 //! The result is a local solution. Source of the sequence: S. Scholtes, SIAM J. Optim. 11 (2001),
 //! doi:10.1137/S1052623499361233.
 
+use crate::complementarity::mpec::tolerances::{LARGEST_RELAXATION, RESTART_FACTOR};
 use nalgebra::DVector;
 
 use crate::complementarity::mpec::input_validation::check_input;
@@ -29,10 +30,6 @@ use crate::complementarity::mpec::smooth_program::sqp::{self, SqpEnd, SqpSetting
 use crate::complementarity::mpec::unboundedness;
 use crate::resources::cancel::CancelFlag;
 
-/// Factor on `ε` from one restart to the next.
-const RESTART_FACTOR: f64 = 100.0;
-/// Largest `ε`: a larger value relaxes no further.
-const LARGEST_RELAXATION: f64 = 1e8;
 /// Largest number of values of `ε` in one descent, whatever the settings.
 const LEVEL_LIMIT: usize = 200;
 

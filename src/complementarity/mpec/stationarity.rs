@@ -22,6 +22,7 @@
 //! Source: H. Scheel and S. Scholtes, *Mathematical programs with complementarity constraints: stationarity, optimality,
 //! and sensitivity*, Math. Oper. Res. 25 (2000), doi:10.1287/moor.25.1.1.15213.
 
+use crate::complementarity::mpec::tolerances::STATIONARY_LENGTH;
 use nalgebra::DVector;
 
 use crate::complementarity::mpec::program::cone::ConeActivity;
@@ -36,9 +37,6 @@ use crate::complementarity::mpec::smooth_program::cone_rows::ConeTreatment;
 use crate::complementarity::mpec::smooth_program::pair_treatment::{PairTreatment, TreatmentPattern};
 use crate::complementarity::mpec::smooth_program::relaxation::{Multipliers, SmoothProgramRows};
 use crate::resources::cancel::CancelFlag;
-
-/// Length of a projected gradient that counts as zero, relative to `1 + ‖∇f‖∞`.
-const STATIONARY_LENGTH: f64 = 1e-6;
 
 /// Largest number of biactive pairs whose branches are enumerated, whatever the settings.
 const ENUMERATION_CEILING: usize = 16;

@@ -8,6 +8,7 @@
 //! falls as far as rounding allows, and at least up to a thousand times the value, there is none: the iterates are
 //! unbounded. Only ratios of like quantities are used, so the result is independent of units.
 
+use crate::complementarity::mpec::tolerances::{EXAMINED_GAIN, GROWTH_FACTOR, OBJECTIVE_ROUND_OFF};
 use nalgebra::DVector;
 
 use crate::complementarity::mpec::piecewise_descent::{self, CandidatePoint};
@@ -20,18 +21,12 @@ use crate::complementarity::mpec::smooth_program::relaxation::SmoothProgramRows;
 use crate::complementarity::mpec::smooth_program::sqp::{self, SqpEnd, SqpSettings};
 use crate::resources::cancel::CancelFlag;
 
-/// First-order gain by a relative increase of a variable, relative to the objective, from which the variable is
-/// examined.
-const GAINS: f64 = 1e-6;
 /// Number of variables examined, those with the largest gain.
 const MOST_VARIABLES: usize = 3;
-/// Factor between the multiples of a variable at which the branch is solved again; the largest number of multiples, and
-/// the smallest that shows unboundedness.
-const MULTIPLE: f64 = 10.0;
+/// Largest number of multiples of a variable at which the branch is solved again.
 const MOST_MULTIPLES: usize = 12;
+/// Smallest number of multiples, each with a smaller objective, that shows unboundedness.
 const FEWEST: usize = 3;
-/// Rounding error of the objective, relative to its magnitude.
-const ROUNDING: f64 = 1e-13;
 
 /// The variable along which the objective falls without end from an apparent solution; `None` where there is none.
 pub fn without_end<P: Problem + ?Sized>(
@@ -49,7 +44,7 @@ pub fn without_end<P: Problem + ?Sized>(
     let gain = gains(&at, candidate);
     let of_variables: f64 = at.gradient.iter().zip(x.iter()).map(|(slope, value)| (slope * value).abs()).sum();
     let size = at.objective.abs() + of_variables;
-    let mut growing: Vec<usize> = (0..x.len()).filter(|&j| gain[j] > GAINS * size).collect();
+    let mut growing: Vec<usize> = (0..x.len()).filter(|&j| gain[j] > EXAMINED_GAIN * size).collect();
     growing.sort_by(|a, b| gain[*b].total_cmp(&gain[*a]).then(a.cmp(b)));
     let pattern = piecewise_descent::nearest_pattern(&at);
     let rows = SmoothProgramRows::new(problem.equalities(), problem.inequalities(), &problem.cone_sizes(), pattern);
@@ -59,7 +54,7 @@ pub fn without_end<P: Problem + ?Sized>(
         let (from, mut start, mut least) = (x[variable], x.clone(), at.objective);
         let mut falls = 0;
         while falls < MOST_MULTIPLES {
-            let to = MULTIPLE * start[variable];
+            let to = GROWTH_FACTOR * start[variable];
             if !(bounds.0[variable]..=bounds.1[variable]).contains(&to) {
                 return None;
             }
@@ -69,7 +64,7 @@ pub fn without_end<P: Problem + ?Sized>(
             let is_point = matches!(outcome.end, SqpEnd::Converged | SqpEnd::Stalled | SqpEnd::IterationLimit)
                 && rows.violation(&outcome.at) <= tolerance;
             let change = outcome.at.objective - least;
-            if !is_point || change.abs() <= ROUNDING * size {
+            if !is_point || change.abs() <= OBJECTIVE_ROUND_OFF * size {
                 break;
             }
             if change > 0.0 {

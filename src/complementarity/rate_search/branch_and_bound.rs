@@ -8,6 +8,7 @@
 //! equations of its combination: the search only selects the combinations to examine.
 
 use crate::complementarity::rate_search::single_combination;
+use crate::complementarity::rate_search::tolerances::SEARCH_TOLERANCE;
 use crate::complementarity::rate_search::unbranched;
 use crate::complementarity::rates::lemke::lemke;
 use crate::complementarity::rates::rate_problem::{Choice, Entity, RateProblem, Signed};
@@ -74,8 +75,6 @@ pub struct Effort<'a> {
 const UNIT_OF_WORK: u64 = 4096;
 /// Largest number of nodes inside solution sets of more than one dimension, whose edges are rays like any other.
 const MOST_IN_SETS: u64 = 512;
-/// A form this small at a node's point counts as zero in the search.
-pub(crate) const FITS: f64 = 1e-7;
 
 /// All rays found within the effort; `first` gives combinations to examine before the others, where there is no
 /// certificate.
@@ -289,7 +288,7 @@ impl BranchAndBound<'_> {
                 .iter()
                 .map(|choice| misfit(&node.dictionary, choice))
                 .fold(f64::INFINITY, f64::min);
-            if fit <= FITS {
+            if fit <= SEARCH_TOLERANCE {
                 continue;
             }
             let score = (node.last.map_or(0.0, |last| self.coupling[(last, entity)]), fit);
@@ -333,7 +332,7 @@ fn misfit(dictionary: &Dictionary, choice: &Choice) -> f64 {
 
 /// Whether an option holds on the one remaining line or ray.
 fn fits(dictionary: &Dictionary, choice: &Choice) -> bool {
-    misfit(dictionary, choice) <= FITS
+    misfit(dictionary, choice) <= SEARCH_TOLERANCE
         && (!dictionary.is_lines_only() || choice.zero.iter().all(|form| dictionary.vanishes(*form)))
 }
 

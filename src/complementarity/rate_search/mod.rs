@@ -14,4 +14,5 @@ pub(crate) mod single_combination;
 pub(crate) mod slip_onset_direction;
 #[cfg(test)]
 pub(crate) mod tests;
+pub(crate) mod tolerances;
 pub(crate) mod unbranched;

@@ -17,6 +17,7 @@ use crate::algebra::Factorisation;
 use crate::algebra::scalar_root::find_root;
 use crate::complementarity::rate_search::branch_and_bound::Ray;
 use crate::complementarity::rate_search::slip_onset_direction::{SECTORS, Touch, Turning};
+use crate::complementarity::rate_search::tolerances::{COEFFICIENT_ROUND_OFF, RATE_TOLERANCE, SETTLED_CHANGE};
 use crate::complementarity::rates::combinations::{combinations, count};
 use crate::complementarity::rates::gauss_seidel::{Local, own_column, rising};
 use crate::complementarity::rates::rate_problem::{RateProblem, Signed};
@@ -37,14 +38,8 @@ pub(crate) struct AtOnce {
 const MOST_STARTS: u64 = 64;
 /// Largest number of sweeps from one start.
 const MOST_SWEEPS: usize = 2000;
-/// Change in a sweep, relative to the largest velocity, from which Newton's method takes over.
-const SETTLED: f64 = 1e-6;
 /// Largest number of Newton iterations.
 const MOST_ITERATIONS: usize = 30;
-/// Relative magnitude below which rates count as zero.
-const WEAK: f64 = 1e-9;
-/// Relative magnitude below which coefficients count as zero.
-const ROUND_OFF: f64 = 1e-12;
 
 /// The behaviour of a touching node.
 #[derive(Clone, Copy, PartialEq)]
@@ -82,8 +77,9 @@ pub(crate) fn slips(problem: &RateProblem, touches: &[Touch], cancel: &CancelFla
                 complete = false;
                 continue;
             };
-            let known =
-                |one: &Turning| (&one.ray.weights - &found.ray.weights).amax() <= WEAK * found.ray.weights.amax();
+            let known = |one: &Turning| {
+                (&one.ray.weights - &found.ray.weights).amax() <= RATE_TOLERANCE * found.ray.weights.amax()
+            };
             if !found.slips.is_empty() && !rays.iter().any(known) {
                 rays.push(found);
             }
@@ -149,7 +145,7 @@ impl<'a> SlipEquations<'a> {
             let rows = node.touch.forces.map(|form| self.problem.forms.row(form));
             let largest = rows.iter().fold(0.0_f64, |largest, row| largest.max(row.amax()));
             let others = (0..last).filter(|column| !node.columns.contains(column));
-            others.into_iter().all(|column| rows.iter().all(|row| row[column].abs() <= ROUND_OFF * largest))
+            others.into_iter().all(|column| rows.iter().all(|row| row[column].abs() <= COEFFICIENT_ROUND_OFF * largest))
         };
         self.others.is_empty() && self.nodes.iter().all(|node| apart(node) && node.resists())
     }
@@ -180,7 +176,7 @@ impl<'a> SlipEquations<'a> {
             if !change.is_finite() {
                 return None;
             }
-            if change <= SETTLED * weights.amax() {
+            if change <= SETTLED_CHANGE * weights.amax() {
                 return Some((pattern, weights));
             }
         }
@@ -205,7 +201,7 @@ impl<'a> SlipEquations<'a> {
                 }
             }
             let change = values.amax() / weights.amax().max(1.0);
-            if change >= 0.5 * smallest && change < WEAK {
+            if change >= 0.5 * smallest && change < RATE_TOLERANCE {
                 return self.ray(&pattern, &weights);
             }
             smallest = smallest.min(change);
@@ -287,9 +283,9 @@ impl<'a> SlipEquations<'a> {
             // The quantity that must not be negative, relative to the tolerance for zero.
             let least = match own {
                 Own::Stick => (node.touch.friction * forces[0] - traction) / force,
-                Own::Free => velocity[0] / WEAK,
+                Own::Free => velocity[0] / RATE_TOLERANCE,
                 Own::Slip { angle } => {
-                    (node.touch.motion(self.problem, &weights, *angle) / WEAK).min(forces[0] / force)
+                    (node.touch.motion(self.problem, &weights, *angle) / RATE_TOLERANCE).min(forces[0] / force)
                 }
             };
             // A slip within the tolerance is stick, or separation.
@@ -317,7 +313,9 @@ impl<'a> SlipEquations<'a> {
         weak |= self.others.iter().any(|(entity, _)| {
             let bounds = &self.problem.entities[*entity].options[chosen[*entity]].nonnegative;
             let value = |signed: &Signed| signed.sign * self.problem.forms.row(signed.form).transpose().dot(&weights);
-            bounds.iter().any(|signed| value(signed) <= if self.problem.is_force[signed.form] { force } else { WEAK })
+            bounds
+                .iter()
+                .any(|signed| value(signed) <= if self.problem.is_force[signed.form] { force } else { RATE_TOLERANCE })
         });
         Some(Turning { ray: Ray { weights, fitting, in_doubt, weak }, slips })
     }
@@ -364,7 +362,7 @@ impl TouchingNode<'_> {
         let friction = self.touch.friction;
         let traction = load.fixed_rows::<2>(1).into_owned();
         let mut found = Vec::new();
-        if friction * load[0] - traction.norm() >= -ROUND_OFF * size {
+        if friction * load[0] - traction.norm() >= -COEFFICIENT_ROUND_OFF * size {
             found.push(NodeSolution { own: Own::Stick, velocity: Vector3::zeros() });
         }
         let at = |angle: f64| {
@@ -391,13 +389,13 @@ impl TouchingNode<'_> {
             before = after;
             let Some(angle) = angle else { continue };
             let (_, speed, pressed) = at(angle);
-            if speed > 0.0 && speed.is_finite() && pressed > ROUND_OFF * size {
+            if speed > 0.0 && speed.is_finite() && pressed > COEFFICIENT_ROUND_OFF * size {
                 let velocity = Vector3::new(0.0, speed * angle.cos(), speed * angle.sin());
                 found.push(NodeSolution { own: Own::Slip { angle }, velocity });
             }
         }
         if let Some(velocity) = self.stiffness.lu().solve(&-load)
-            && velocity[0] >= -ROUND_OFF * velocity.amax()
+            && velocity[0] >= -COEFFICIENT_ROUND_OFF * velocity.amax()
         {
             found.push(NodeSolution { own: Own::Free, velocity });
         }

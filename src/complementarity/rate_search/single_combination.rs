@@ -1,6 +1,7 @@
 //! The examination of combinations: the exact line of each combination, and the rays on it.
 
 use crate::complementarity::rate_search::branch_and_bound::{BranchAndBound, Ray};
+use crate::complementarity::rate_search::tolerances::RAY_DISTANCE;
 use crate::complementarity::rates::combinations::{combinations, count};
 use crate::complementarity::rates::ray;
 use crate::complementarity::rates::ray::{Along, Line};
@@ -10,8 +11,6 @@ use nalgebra::DVector;
 const MOST_LABELS: u64 = 64;
 /// Largest number of stored bases of solution sets of more than one dimension.
 const MOST_PLANES: usize = 256;
-/// Rays closer than this, relative to their largest weight, are equal.
-const SAME: f64 = 1e-9;
 
 /// The result of the examination of one combination.
 pub(crate) enum Examined {
@@ -72,7 +71,7 @@ pub(crate) fn examine(search: &mut BranchAndBound<'_>, chosen: &[usize]) -> Exam
 
 fn keep(search: &mut BranchAndBound<'_>, chosen: &[usize], weights: DVector<f64>, along: &Along<'_>) {
     let size = weights.amax();
-    if !search.findings.rays.iter().any(|ray| (&ray.weights - &weights).amax() <= SAME * size) {
+    if !search.findings.rays.iter().any(|ray| (&ray.weights - &weights).amax() <= RAY_DISTANCE * size) {
         let fitting = along.fitting(chosen);
         let weak = along.is_weak(&fitting);
         // Two lists for each entity.

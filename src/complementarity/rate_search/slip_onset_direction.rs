@@ -15,6 +15,7 @@
 
 use crate::algebra::scalar_root::find_root;
 use crate::complementarity::rate_search::branch_and_bound::{Effort, Ray, explore};
+use crate::complementarity::rate_search::tolerances::{MISFIT_TOLERANCE, SMALLEST_RAY_COSINE};
 use crate::complementarity::rates::gauss_seidel::own_column;
 use crate::complementarity::rates::rate_problem::{Choice, Entity, RateProblem};
 use crate::resources::budget;
@@ -23,10 +24,6 @@ use std::f64::consts::TAU;
 
 /// Number of angles at which the circle is scanned.
 pub(crate) const SECTORS: usize = 64;
-/// Least cosine between the motions of rays at neighbouring angles that belong together.
-const TOGETHER: f64 = 0.9;
-/// Misfit (relative to the force rates) up to which an angle is a root.
-const ROOT: f64 = 1e-9;
 
 /// A ray along which entities begin to slip.
 pub(crate) struct Turning {
@@ -56,15 +53,15 @@ pub(crate) fn slips(problem: &RateProblem, touch: &Touch, effort: Effort<'_>) ->
         let angle = TAU * sector as f64 / SECTORS as f64;
         let here = touch.rays(problem, angle, effort);
         for (ray, misfit) in &here {
-            if misfit.abs() <= ROOT {
+            if misfit.abs() <= MISFIT_TOLERANCE {
                 touch.keep(&mut found, problem, ray.clone(), angle);
                 continue;
             }
             let partner = before.iter().find(|(other, other_misfit)| {
                 other.chosen() == ray.chosen()
                     && misfit * other_misfit < 0.0
-                    && other_misfit.abs() > ROOT
-                    && cosine(problem, other, ray) > TOGETHER
+                    && other_misfit.abs() > MISFIT_TOLERANCE
+                    && cosine(problem, other, ray) > SMALLEST_RAY_COSINE
             });
             let Some((other, other_misfit)) = partner else { continue };
             let first = TAU * (sector as f64 - 1.0) / SECTORS as f64;
@@ -150,8 +147,10 @@ impl Touch {
     fn is_slip(&self, problem: &RateProblem, ray: &Ray, angle: f64) -> bool {
         let value = |form: usize| problem.forms.row(form).transpose().dot(&ray.weights);
         let size = (&problem.reactions * &ray.weights).amax().max(f64::MIN_POSITIVE);
-        let opens = self.opening.iter().all(|gap| value(*gap) >= -ROOT);
-        self.motion(problem, &ray.weights, angle) > ROOT && value(self.forces[0]) > ROOT * size && opens
+        let opens = self.opening.iter().all(|gap| value(*gap) >= -MISFIT_TOLERANCE);
+        self.motion(problem, &ray.weights, angle) > MISFIT_TOLERANCE
+            && value(self.forces[0]) > MISFIT_TOLERANCE * size
+            && opens
     }
 
     /// A dimensionless measure of the node's motion along a direction: its velocity, or, for a slow node on stiff

@@ -1,8 +1,9 @@
 //! Cases without branching: a certificate for the whole problem or for the rest of it at a node, and signs of the load
 //! rate settled by a known ray.
 
-use crate::complementarity::rate_search::branch_and_bound::{BranchAndBound, FITS, Ray, SearchNode};
+use crate::complementarity::rate_search::branch_and_bound::{BranchAndBound, Ray, SearchNode};
 use crate::complementarity::rate_search::single_combination;
+use crate::complementarity::rate_search::tolerances::SEARCH_TOLERANCE;
 use crate::complementarity::rates::p_matrix::{is_monotone, options_of, reduce};
 use crate::complementarity::rates::parametric_lcp::all_solutions;
 use crate::complementarity::rates::rate_problem::{Entity, Signed};
@@ -58,7 +59,7 @@ pub(crate) fn settled_signs(search: &BranchAndBound<'_>) -> Vec<f64> {
     }
     let motion = &search.problem.motion;
     let load_of = |ray: &Ray| (motion.row(motion.nrows() - 1) * &ray.weights)[0];
-    let strict = |sign: f64| search.findings.rays.iter().any(|ray| !ray.weak && sign * load_of(ray) > FITS);
+    let strict = |sign: f64| search.findings.rays.iter().any(|ray| !ray.weak && sign * load_of(ray) > SEARCH_TOLERANCE);
     [1.0, -1.0].into_iter().filter(|sign| strict(*sign)).collect()
 }
 

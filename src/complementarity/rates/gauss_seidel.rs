@@ -9,6 +9,7 @@
 
 use crate::complementarity::rates::rate_problem::{Entity, RateProblem, Touching};
 use crate::complementarity::rates::ray;
+use crate::complementarity::rates::tolerances::{DIVERGENT_GROWTH, RELATIVE_ROUND_OFF, SETTLED_CHANGE};
 use crate::resources::budget;
 use crate::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector};
@@ -17,15 +18,8 @@ use nalgebra::{DMatrix, DVector};
 const WORK: usize = 100_000_000;
 /// Sweeps without a change of any option after which the combination is first examined.
 const UNCHANGED: usize = 30;
-/// Growth of the velocities from which the sweeps count as divergent.
-const GROWN: f64 = 1e9;
-/// Largest change of a velocity in a sweep, relative to the largest velocity, below which the sweeps have settled.
-const SETTLED: f64 = 1e-12;
 /// Relaxation factors, tried in order.
 const RELAXATIONS: [f64; 3] = [1.9, 1.6, 1.0];
-
-/// A coefficient this small counts as zero.
-const ROUND_OFF: f64 = 1e-12;
 
 /// The combinations on which the sweeps settle, for a rising and a falling load; none where the entities are not plain
 /// contacts or the sweeps do not settle.
@@ -108,7 +102,7 @@ impl Local {
                     let stiffness = forms[(own.cone[side], tangential)];
                     let motion = -cone[side] / stiffness;
                     let pressed = pressing + forms[(own.pressing, tangential)] * motion;
-                    let rounding = ROUND_OFF * (traction.abs() + pressing.abs());
+                    let rounding = RELATIVE_ROUND_OFF * (traction.abs() + pressing.abs());
                     if sense * motion > 0.0 && pressed >= -rounding {
                         weights[tangential] = motion;
                         return Some(1 + side);
@@ -133,9 +127,9 @@ impl Local {
 pub fn own_column(problem: &RateProblem, form: usize) -> Option<usize> {
     let row = problem.forms.row(form);
     // The coefficient is 1 up to the rounding of a frame that is not aligned with the axes.
-    let mut filled = (0..row.len()).filter(|column| row[*column].abs() > ROUND_OFF);
+    let mut filled = (0..row.len()).filter(|column| row[*column].abs() > RELATIVE_ROUND_OFF);
     match (filled.next(), filled.next()) {
-        (Some(column), None) if (row[column] - 1.0).abs() < ROUND_OFF => Some(column),
+        (Some(column), None) if (row[column] - 1.0).abs() < RELATIVE_ROUND_OFF => Some(column),
         _ => None,
     }
 }
@@ -175,12 +169,12 @@ fn settle(
                 largest = largest.max(own.abs());
             }
         }
-        let most = GROWN * *first.get_or_insert(largest.max(f64::MIN_POSITIVE));
+        let most = DIVERGENT_GROWTH * *first.get_or_insert(largest.max(f64::MIN_POSITIVE));
         if !largest.is_finite() || largest > most {
             return None;
         }
         unchanged = if same { unchanged + 1 } else { 0 };
-        if same && change <= SETTLED * largest || unchanged >= enough && ray::is_feasible(problem, &chosen) {
+        if same && change <= SETTLED_CHANGE * largest || unchanged >= enough && ray::is_feasible(problem, &chosen) {
             return Some(chosen);
         }
         if unchanged >= enough {

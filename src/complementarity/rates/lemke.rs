@@ -15,6 +15,7 @@
 
 use crate::complementarity::rates::gauss_seidel::{Local, rising};
 use crate::complementarity::rates::rate_problem::RateProblem;
+use crate::complementarity::rates::tolerances::{SMALLEST_PIVOT, TIE_TOLERANCE};
 use crate::resources::budget::{self, Taken};
 use crate::resources::cancel::CancelFlag;
 use nalgebra::DMatrix;
@@ -26,10 +27,6 @@ const MOST_COVERS: usize = 12;
 const MOST_PIVOTS: usize = 10;
 /// Largest number of tableau entries that all pivots of one call may change; further covering vectors are not tried.
 const WORK: usize = 2_000_000_000;
-/// Coefficients (of rows and columns of about unit size) below this are not used as pivots.
-const NOTHING: f64 = 1e-11;
-/// Ratios closer than this, relative to their magnitude, are ties.
-const TIE: f64 = 1e-12;
 
 /// A force, and the weight (with a sign) that is its complement.
 struct Pair {
@@ -207,7 +204,7 @@ impl LemkeTableau {
         let count = self.basic.len();
         let size = (0..count).fold(0.0_f64, |size, row| size.max(self.rows[(row, entering)].abs()));
         let mut best: Option<usize> = None;
-        for row in (0..count).filter(|&row| self.rows[(row, entering)] > NOTHING * size.max(1.0)) {
+        for row in (0..count).filter(|&row| self.rows[(row, entering)] > SMALLEST_PIVOT * size.max(1.0)) {
             best = Some(match best {
                 Some(known) if !self.comes_before(row, known, entering) => known,
                 Some(_) | None => row,
@@ -221,7 +218,7 @@ impl LemkeTableau {
         let ratio = |row: usize, column: usize| self.rows[(row, column)] / self.rows[(row, entering)];
         let compare = |column: usize| {
             let (one, two) = (ratio(row, column), ratio(other, column));
-            ((one - two).abs() > TIE * one.abs().max(two.abs()).max(NOTHING)).then_some(one < two)
+            ((one - two).abs() > TIE_TOLERANCE * one.abs().max(two.abs()).max(SMALLEST_PIVOT)).then_some(one < two)
         };
         if let Some(before) = compare(2 * count + 1) {
             return before;

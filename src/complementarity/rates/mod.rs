@@ -10,8 +10,10 @@
 //! | `lemke` | complementary pivoting |
 //! | `gauss_seidel` | a likely combination for each sign of the load rate |
 //! | `warm_start` | combinations suggested by a known vector of weights |
+//! | `block_pivoting` | complementarity by changing all violated conditions at once |
 //! | `combinations` | combinations of one item from each of several lists, in a fixed order |
 
+pub(crate) mod block_pivoting;
 pub(crate) mod combinations;
 pub(crate) mod gauss_seidel;
 pub(crate) mod lemke;
@@ -20,4 +22,5 @@ pub(crate) mod parametric_lcp;
 pub(crate) mod rate_problem;
 pub(crate) mod ray;
 pub(crate) mod simplex_dictionary;
+pub(crate) mod tolerances;
 pub(crate) mod warm_start;

@@ -20,21 +20,14 @@
 //! finite for P-matrices).
 
 use crate::algebra::Factorisation;
+use crate::complementarity::rates::tolerances::{
+    DEFINITENESS_MARGIN, RELATIVE_ROUND_OFF, SMALLEST_VALUE_SCALE, VANISHING_FORM, VANISHING_VALUE,
+};
 use crate::resources::budget::{self, Taken};
 use nalgebra::{DMatrix, DVector};
 
 /// Rounds without progress before the least-index method takes over.
 const PATIENCE: usize = 8;
-/// Margin by which a matrix has to be positive definite or dominant, relative to its magnitude: beyond round-off.
-const MARGIN: f64 = 1e-10;
-/// Entries below this fraction of the largest are round-off.
-const ROUND_OFF: f64 = 1e-12;
-/// Coefficients below this are round-off.
-const VANISHING: f64 = 1e-9;
-/// Values below this fraction of the largest are zero.
-const WEAK_VALUE: f64 = 1e-7;
-/// Where the largest value is smaller than this (at a load rate of 1), all values may be round-off.
-const LEAST_SIZE: f64 = 1e-5;
 
 /// The problem `a = M b + q ṡ` with a P-matrix `M`.
 pub struct Certified {
@@ -57,7 +50,7 @@ pub fn reduce(a: &DMatrix<f64>, b: &DMatrix<f64>, load: &[f64]) -> Option<(DMatr
     coordinates.rows_mut(0, count).copy_from(b);
     coordinates.row_mut(count).copy_from_slice(load);
     // The forms have unit size: the entries of a vanishing form are round-off.
-    if coordinates.row_iter().any(|row| row.amax() <= VANISHING) {
+    if coordinates.row_iter().any(|row| row.amax() <= VANISHING_FORM) {
         return None;
     }
     let factorisation = Factorisation::new(coordinates)?;
@@ -100,12 +93,12 @@ impl Certified {
 /// 1980, chapter III): an isolated solution, with every inequality strict and regular equations, is unique.
 pub fn is_monotone(matrix: &DMatrix<f64>, bounds: &[usize]) -> bool {
     let size = matrix.amax();
-    if !size.is_finite() || bounds.iter().any(|&row| matrix.row(row).amax() > ROUND_OFF * size) {
+    if !size.is_finite() || bounds.iter().any(|&row| matrix.row(row).amax() > RELATIVE_ROUND_OFF * size) {
         return false;
     }
     let mut symmetric = (matrix + matrix.transpose()) * 0.5;
     for index in 0..symmetric.nrows() {
-        symmetric[(index, index)] += ROUND_OFF * size;
+        symmetric[(index, index)] += RELATIVE_ROUND_OFF * size;
     }
     size == 0.0 || has_cholesky(&symmetric, 0.0)
 }
@@ -119,7 +112,10 @@ pub(crate) fn scales(matrix: &DMatrix<f64>, beside: impl Fn(usize) -> f64) -> Op
     }
     let is_positive = |(row, size): (usize, &f64)| {
         let diagonal = matrix[(row, row)];
-        diagonal.is_finite() && diagonal > 0.0 && diagonal > MARGIN * size && diagonal > ROUND_OFF * beside(row)
+        diagonal.is_finite()
+            && diagonal > 0.0
+            && diagonal > DEFINITENESS_MARGIN * size
+            && diagonal > RELATIVE_ROUND_OFF * beside(row)
     };
     let all = sizes.iter().enumerate().all(is_positive);
     all.then(|| matrix.diagonal().map(|diagonal| 1.0 / diagonal.sqrt()))
@@ -148,7 +144,7 @@ pub fn is_definite(mut matrix: DMatrix<f64>) -> bool {
 /// doi:10.1093/comjnl/9.3.281).
 fn is_positive_definite(matrix: &DMatrix<f64>) -> bool {
     let size = matrix.amax();
-    size.is_finite() && has_cholesky(matrix, MARGIN * size)
+    size.is_finite() && has_cholesky(matrix, DEFINITENESS_MARGIN * size)
 }
 
 /// Whether the Cholesky factorisation of the symmetric part exists with `margin` subtracted from every pivot.
@@ -250,12 +246,13 @@ fn basic_solution(matrix: &DMatrix<f64>, constant: &DVector<f64>, active: &[bool
 
 /// The options of each pair that hold at a solution: the first (`b = 0`), the second (`a = 0`), or both.
 pub fn options_of(pairs: &Pairs) -> Vec<Vec<usize>> {
-    let largest =
-        pairs.iter().fold([LEAST_SIZE; 2], |size, pair| [size[0].max(pair[0].abs()), size[1].max(pair[1].abs())]);
+    let largest = pairs
+        .iter()
+        .fold([SMALLEST_VALUE_SCALE; 2], |size, pair| [size[0].max(pair[0].abs()), size[1].max(pair[1].abs())]);
     pairs
         .iter()
         .map(|pair| {
-            let zero = [pair[0].abs() <= WEAK_VALUE * largest[0], pair[1].abs() <= WEAK_VALUE * largest[1]];
+            let zero = [pair[0].abs() <= VANISHING_VALUE * largest[0], pair[1].abs() <= VANISHING_VALUE * largest[1]];
             match zero {
                 [true, true] => vec![0, 1],
                 [true, false] => vec![1],

@@ -21,19 +21,12 @@
 
 use crate::algebra::Factorisation;
 use crate::complementarity::rates::p_matrix::{Certified, Pairs, is_p_matrix, scale, scales, solve_complementarity};
+use crate::complementarity::rates::tolerances::{DIAGONAL_SHIFT, DOUBTFUL_ZERO, RELATIVE_ROUND_OFF, SMALLEST_TERM};
 use crate::resources::budget;
 use nalgebra::{DMatrix, DVector};
 
 /// Largest number of pieces of one half of the function, per pair.
 const MOST_PIECES: usize = 10;
-/// Values below this fraction of their terms are zero at a change of pieces.
-const ROUND_OFF: f64 = 1e-12;
-/// The same fraction for the function whose zeros are sought: doubtful zeros are included, and examined exactly.
-const NEAR_ZERO: f64 = 1e-9;
-/// Terms count as no smaller than this fraction of the largest coefficient: the rest may be round-off.
-const LEAST_TERM: f64 = 1e-2;
-/// Relative diagonal shift that makes a singular matrix regular.
-const SHIFT: f64 = 1e-13;
 
 /// Whether each load rate has exactly one solution, and a list that contains all solutions, at least for load rates of
 /// the given signs. `None` where this is not certain.
@@ -79,7 +72,7 @@ fn candidates(matrix: &DMatrix<f64>) -> Vec<usize> {
     scale(&mut symmetric, &scales);
     let mut symmetric = (&symmetric + symmetric.transpose()) * 0.5;
     let size = symmetric.amax();
-    (0..count).for_each(|index| symmetric[(index, index)] += SHIFT * size);
+    (0..count).for_each(|index| symmetric[(index, index)] += DIAGONAL_SHIFT * size);
     let Some(factorisation) = Factorisation::new(symmetric) else { return Vec::new() };
     let mut diagonal = Vec::with_capacity(count);
     for index in 0..count {
@@ -123,8 +116,8 @@ fn of_others(matrix: &DMatrix<f64>, load: &DVector<f64>, left_out: usize) -> Opt
         let pairs = solve_complementarity(&others, &(&by_load * sign))?;
         let terms = || pairs.iter().zip(row.iter()).map(|([_, b], coefficient)| coefficient * b);
         let own = terms().sum::<f64>() + sign * load[left_out];
-        let size = (terms().map(f64::abs).sum::<f64>() + load[left_out].abs()).max(LEAST_TERM * load.amax());
-        if own >= -NEAR_ZERO * size {
+        let size = (terms().map(f64::abs).sum::<f64>() + load[left_out].abs()).max(SMALLEST_TERM * load.amax());
+        if own >= -DOUBTFUL_ZERO * size {
             found.push(whole(pairs, [own, 0.0]));
         }
     }
@@ -188,7 +181,7 @@ impl Pieces {
     /// The value of a row at a load rate, and the magnitude of its terms.
     fn value(&self, row: usize, load: f64) -> (f64, f64) {
         let (constant, linear) = (self.entry(row, self.count), self.by_load(row) * load);
-        (constant + linear, constant.abs() + linear.abs() + LEAST_TERM * self.size * (1.0 + load.abs()))
+        (constant + linear, constant.abs() + linear.abs() + SMALLEST_TERM * self.size * (1.0 + load.abs()))
     }
 
     /// Exchanges the members of a pair; `None` where the pivot is not positive.
@@ -225,20 +218,22 @@ impl Pieces {
             self.turn_into(load, sense, changing)?;
             let next = self.next(load, sense);
             let (here, size) = self.value(last, load);
-            let is_zero = |value: f64, size: f64| value.abs() <= NEAR_ZERO * size;
+            let is_zero = |value: f64, size: f64| value.abs() <= DOUBTFUL_ZERO * size;
             let root = -self.entry(last, self.count) / self.by_load(last);
             match next {
                 Some((_, end)) => {
                     let (there, other) = self.value(last, end);
                     match (is_zero(here, size), is_zero(there, other)) {
-                        (true, true) if (end - load).abs() > NEAR_ZERO * (1.0 + load.abs()) => return None,
+                        (true, true) if (end - load).abs() > DOUBTFUL_ZERO * (1.0 + load.abs()) => return None,
                         (true, _) => found.push(self.pairs(load)),
                         (false, true) => found.push(self.pairs(end)),
                         (false, false) if here * there < 0.0 => found.push(self.pairs(root)),
                         (false, false) => {}
                     }
                 }
-                None if is_zero(here, size) && self.by_load(last).abs() <= ROUND_OFF * self.size => return None,
+                None if is_zero(here, size) && self.by_load(last).abs() <= RELATIVE_ROUND_OFF * self.size => {
+                    return None;
+                }
                 None if is_zero(here, size) => found.push(self.pairs(load)),
                 None if here * sense * self.by_load(last) < 0.0 => found.push(self.pairs(root)),
                 None => {}
@@ -256,7 +251,7 @@ impl Pieces {
         let at_zero: Vec<usize> = (0..self.count)
             .filter(|&row| {
                 let (value, size) = self.value(row, load);
-                changing == Some(row) || value <= ROUND_OFF * size
+                changing == Some(row) || value <= RELATIVE_ROUND_OFF * size
             })
             .collect();
         if at_zero.iter().all(|&row| sense * self.by_load(row) >= 0.0) {
@@ -283,7 +278,7 @@ impl Pieces {
             }
             let (value, size) = self.value(row, load);
             // `turn_into` has made zero values nondecreasing; the remainder is round-off.
-            if value <= ROUND_OFF * size {
+            if value <= RELATIVE_ROUND_OFF * size {
                 continue;
             }
             let way = value / -rate;

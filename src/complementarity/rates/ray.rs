@@ -2,17 +2,9 @@
 
 use crate::algebra::null_space;
 use crate::complementarity::rates::rate_problem::{Choice, Entity, RateProblem};
+use crate::complementarity::rates::tolerances::{DOUBTFUL_RATE, RANK_TOLERANCE, RATE_TOLERANCE, SUM_ROUND_OFF};
 use crate::resources::budget;
 use nalgebra::{DMatrix, DVector};
-
-/// Inequalities (of rates of unit arc length) that hold with equality within this tolerance are weak.
-pub const WEAK: f64 = 1e-9;
-/// Values below this may change sign within the small steps by which weak rays are tried.
-pub const IN_DOUBT: f64 = 1e-7;
-/// Rounding error of a sum, relative to the sum of the magnitudes of its terms.
-const ROUNDING: f64 = 1e-14;
-/// Relative pivot that decides the rank of a combination's equations.
-pub const RANK: f64 = 1e-11;
 
 /// The solution set of the equations of one combination.
 pub enum Line {
@@ -42,7 +34,7 @@ impl Forces {
         let own = entity
             .touching
             .map_or(self.largest, |forms| values[forms.pressing].abs().max(values[forms.traction].abs()));
-        (tolerance * own).max(tolerance / WEAK * self.rounding)
+        (tolerance * own).max(tolerance / RATE_TOLERANCE * self.rounding)
     }
 }
 
@@ -58,7 +50,7 @@ pub(crate) fn line(problem: &RateProblem, chosen: &[usize]) -> Line {
     let _held = budget::take::<f64>(3 * rows.len() * problem.weights());
     budget::spend(rows.len() * problem.weights());
     let equations = problem.forms.select_rows(&rows);
-    let Some(basis) = null_space(&equations, RANK) else { return Line::NotFinite };
+    let Some(basis) = null_space(&equations, RANK_TOLERANCE) else { return Line::NotFinite };
     if basis.ncols() > 1 {
         return Line::Plane(basis);
     }
@@ -68,7 +60,7 @@ pub(crate) fn line(problem: &RateProblem, chosen: &[usize]) -> Line {
     let weights: DVector<f64> = basis.column(0).into_owned();
     let size = size(problem, &weights);
     let largest = (&problem.reactions * &weights).amax();
-    if size.is_nan() || size <= WEAK * largest {
+    if size.is_nan() || size <= RATE_TOLERANCE * largest {
         return Line::Still;
     }
     let weights = weights / size;
@@ -94,7 +86,7 @@ fn forces(problem: &RateProblem, weights: &DVector<f64>) -> Forces {
     for (column, weight) in problem.reactions.column_iter().zip(weights.iter()) {
         terms.iter_mut().zip(column.iter()).for_each(|(sum, value)| *sum += (value * weight).abs());
     }
-    let rounding = ROUNDING * terms.into_iter().fold(0.0, f64::max);
+    let rounding = SUM_ROUND_OFF * terms.into_iter().fold(0.0, f64::max);
     Forces { largest, rounding: rounding.max(f64::MIN_POSITIVE) }
 }
 
@@ -110,16 +102,16 @@ pub(crate) fn edges(problem: &RateProblem, chosen: &[usize], basis: &DMatrix<f64
         budget::spend((problem.motion.nrows() + problem.reactions.nrows()) * problem.weights());
         let row = problem.forms.row(signed.form);
         let parts = [0, 1].map(|column| row.transpose().dot(&basis.column(column)));
-        if parts[0].abs().max(parts[1].abs()) <= WEAK * row.amax() * basis.amax() {
+        if parts[0].abs().max(parts[1].abs()) <= RATE_TOLERANCE * row.amax() * basis.amax() {
             continue;
         }
         let along = basis.column(0) * parts[1] - basis.column(1) * parts[0];
         let size = size(problem, &along);
-        if !(size.is_finite() && size > WEAK * (&problem.reactions * &along).amax()) {
+        if !(size.is_finite() && size > RATE_TOLERANCE * (&problem.reactions * &along).amax()) {
             continue;
         }
         for weights in [-&along / size, &along / size] {
-            let is_new = |known: &DVector<f64>| (known - &weights).amax() > WEAK * weights.amax();
+            let is_new = |known: &DVector<f64>| (known - &weights).amax() > RATE_TOLERANCE * weights.amax();
             if edges.iter().all(is_new) && forms_along(problem, &weights).violated(chosen).is_empty() {
                 edges.push(weights);
             }
@@ -151,18 +143,18 @@ impl Along<'_> {
 
     /// The tolerance below which rates of force count as zero.
     pub fn force_tolerance(&self) -> f64 {
-        (WEAK * self.forces.largest).max(self.forces.rounding)
+        (RATE_TOLERANCE * self.forces.largest).max(self.forces.rounding)
     }
 
     /// The options of each entity under which a ray, found under the chosen options, is feasible. As each option
     /// concerns its own entity only, the ray is feasible under every combination of these options.
     pub fn fitting(&self, chosen: &[usize]) -> Vec<Vec<usize>> {
-        self.within(WEAK, chosen)
+        self.within(RATE_TOLERANCE, chosen)
     }
 
     /// The options of each entity under which the ray is feasible if small values count as zero.
     pub fn in_doubt(&self, chosen: &[usize]) -> Vec<Vec<usize>> {
-        self.within(IN_DOUBT, chosen)
+        self.within(DOUBTFUL_RATE, chosen)
     }
 
     fn within(&self, tolerance: f64, chosen: &[usize]) -> Vec<Vec<usize>> {
@@ -198,9 +190,9 @@ impl Along<'_> {
     /// Whether `is_so` holds for the value and the weak tolerance of some inequality of an entity's option.
     fn some_inequality(&self, entity: usize, choice: usize, is_so: impl Fn(f64, f64) -> bool) -> bool {
         let entity = &self.problem.entities[entity];
-        let force = self.forces.tolerance(entity, &self.values, WEAK);
+        let force = self.forces.tolerance(entity, &self.values, RATE_TOLERANCE);
         entity.options[choice].nonnegative.iter().any(|signed| {
-            let tolerance = if self.problem.is_force[signed.form] { force } else { WEAK };
+            let tolerance = if self.problem.is_force[signed.form] { force } else { RATE_TOLERANCE };
             is_so(signed.sign * self.values[signed.form], tolerance)
         })
     }

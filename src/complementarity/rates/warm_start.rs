@@ -2,10 +2,9 @@
 
 use crate::complementarity::rates::combinations::combinations;
 use crate::complementarity::rates::rate_problem::{Choice, RateProblem};
+use crate::complementarity::rates::tolerances::MISFIT_TIE;
 use nalgebra::DVector;
 
-/// Difference of misfits (relative to unit arc length, or the largest force) up to which options are in doubt.
-const DOUBT: f64 = 1e-6;
 /// Largest number of combinations returned.
 const MOST: u64 = 64;
 
@@ -31,7 +30,7 @@ pub fn near(problem: &RateProblem, weights: &DVector<f64>) -> Vec<Vec<usize>> {
                 entity.options.iter().enumerate().map(|(index, choice)| (misfit(choice), index)).collect();
             order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             let least = order.first().map_or(0.0, |(least, _)| *least);
-            order.into_iter().filter(|(misfit, _)| *misfit <= least + DOUBT).map(|(_, index)| index).collect()
+            order.into_iter().filter(|(misfit, _)| *misfit <= least + MISFIT_TIE).map(|(_, index)| index).collect()
         })
         .collect();
     combinations(&options, MOST).collect()

@@ -8,17 +8,16 @@
 //! w = w₀ + M z,    0 <= w ⊥ z >= 0
 //! ```
 //!
-//! This linear complementarity problem of the contacts that change is solved by repeatedly changing all contacts with
-//! the wrong sign (block pivoting: J. J. Júdice, F. M. Pires, Computers Ops. Res. 21 (1994) 587,
-//! doi:10.1016/0305-0548(94)90106-6, without its safeguard against cycling: the result serves only as a guess). A
-//! contact enters the problem when its own sign is wrong.
+//! This linear complementarity problem of the contacts that change is solved by block pivoting, without the safeguard
+//! against cycling. A contact enters the problem when its own sign is wrong.
 
 use crate::algebra::sparse::SparseFactorisation;
 use crate::algebra::{Factorisation, SystemFactorisation};
 use crate::branching::directions::condensation_basis;
+use crate::complementarity::rates::block_pivoting::{self, RoundResult, Rounds};
 use crate::mechanics::contact::vector::dot;
 use crate::mechanics::contact::{Mode, Reaction};
-use crate::mechanics::equations::{Kind, ModeSystem};
+use crate::mechanics::equations::{Kind, ModeSystem, rate_recovery};
 use crate::mechanics::problem::state::{Rate, State};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -61,30 +60,45 @@ pub(crate) fn complementary(
     let SystemFactorisation::Sparse(factorisation) = factorisation else { return None };
     let mut changing = ActiveSetCandidates { contacts: Vec::new(), are_changed: Vec::new(), columns: Vec::new() };
     join(system, &mut changing, first, state, factorisation)?;
-    for _ in 0..MOST_SETS {
-        let (end, mut wrong) = with_changes(system, &changing, state)?;
-        // Contacts already changed are judged by their new modes.
-        let is_changed = |contact: &usize| {
-            changing.contacts.iter().position(|other| other == contact).is_some_and(|at| changing.are_changed[at])
-        };
-        let others: Vec<usize> = broken(&end)?.into_iter().filter(|contact| !is_changed(contact)).collect();
-        if wrong.is_empty() && others.is_empty() {
-            let leaves_no_choice = leaves_no_choice(system, &changing, state, rate);
-            let changed = changing.contacts.into_iter().zip(changing.are_changed);
-            let changed = changed.filter_map(|(contact, is_changed)| is_changed.then_some(contact)).collect();
-            return Some(Complementary { changed, state: end, leaves_no_choice });
-        }
-        let mut joining = Vec::new();
-        for contact in others {
+    let examine = |changing: &ActiveSetCandidates| {
+        let (end, wrong) = with_changes(system, changing, state)?;
+        let mut changes: Vec<SetChange> = wrong.into_iter().map(SetChange::Toggled).collect();
+        for contact in broken(&end)? {
             match changing.contacts.iter().position(|other| *other == contact) {
-                Some(at) => wrong.push(at),
-                None => joining.push(contact),
+                // Contacts already changed are judged by their new modes.
+                Some(at) if changing.are_changed[at] => {}
+                Some(at) => changes.push(SetChange::Toggled(at)),
+                None => changes.push(SetChange::Joined(contact)),
             }
         }
-        wrong.iter().for_each(|at| changing.are_changed[*at] ^= true);
-        join(system, &mut changing, &joining, state, factorisation)?;
-    }
-    None
+        if !changes.is_empty() {
+            return Some(RoundResult::Violated(changes));
+        }
+        let changed = changing.contacts.iter().zip(&changing.are_changed);
+        let changed = changed.filter_map(|(contact, is_changed)| is_changed.then_some(*contact)).collect();
+        let leaves_no_choice = leaves_no_choice(system, changing, state, rate);
+        Some(RoundResult::Solved(Complementary { changed, state: end, leaves_no_choice }))
+    };
+    let change = |changing: &mut ActiveSetCandidates, changes: Vec<SetChange>| {
+        let mut joining = Vec::new();
+        for change in changes {
+            match change {
+                SetChange::Toggled(at) => changing.are_changed[at] ^= true,
+                SetChange::Joined(contact) => joining.push(contact),
+            }
+        }
+        join(system, changing, &joining, state, factorisation)
+    };
+    // The result serves only as a guess, so that a cycle of blocks need not be broken.
+    block_pivoting::block_pivot(changing, Rounds { in_blocks: MOST_SETS, one_by_one: 0 }, examine, change)
+}
+
+/// A change of the set of contacts that change.
+enum SetChange {
+    /// A contact known to the set, by its index there, changes or changes no longer.
+    Toggled(usize),
+    /// A contact joins the set and changes.
+    Joined(usize),
 }
 
 /// Adds contacts to those that may change.
@@ -110,7 +124,7 @@ fn join(
     }
     let iterate = system.iterate(state.clone());
     for (contact, values) in contacts.iter().zip(values.chunks_exact(system.size)) {
-        let mut rate = system.rate_at(&iterate, &DVector::from_column_slice(values), Kind::Rates);
+        let mut rate = rate_recovery::rate_at(system, &iterate, &DVector::from_column_slice(values), Kind::Rates);
         if system.modes[*contact] == Mode::Free {
             let normal = normal(*contact);
             rate.reactions[*contact].add(1.0, &Reaction::of(&normal, &normal));

@@ -11,3 +11,4 @@ pub(crate) mod linear_complementarity;
 pub(crate) mod piecewise_linear;
 pub(crate) mod prediction;
 pub(crate) mod simultaneous;
+pub(crate) mod tolerances;

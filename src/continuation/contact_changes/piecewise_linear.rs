@@ -7,21 +7,14 @@
 //! are kept, because another direction can be followed from any of them.
 
 use crate::continuation::contact_changes::prediction::ForeseenChange;
+use crate::continuation::contact_changes::tolerances::{
+    CONSTANT_BOUND_SLOPE, CONSTANT_SLOPE, EVENT_OVERSHOOT, VANISHING_EVENT_VALUE,
+};
 use crate::continuation::path_state::trace::PathTrace;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::linearity::is_straight;
 use crate::mechanics::problem::node_forces;
 use crate::step::event_functions::{self, Watch};
-
-/// Length by which the trial step exceeds the distance to the event, relative to this distance: the event is then
-/// detected as passed.
-const PAST: f64 = 1.0 / 64.0;
-/// A quantity that changes by less than this fraction of its scale per unit arc length is constant.
-const CONSTANT: f64 = 1e-10;
-/// The same for the load and displacements, which are not differences of other quantities.
-const CONSTANT_BOUND: f64 = 1e-14;
-/// Values up to this, relative to a quantity's scale, count as zero.
-const ZERO: f64 = 1e-12;
 
 /// The next event, where the path is straight up to the event and a little beyond.
 pub(crate) fn next_event_ahead(trace: &mut PathTrace<'_>) -> Option<ForeseenChange> {
@@ -30,7 +23,7 @@ pub(crate) fn next_event_ahead(trace: &mut PathTrace<'_>) -> Option<ForeseenChan
     }
     loop {
         let (watch, way) = straight_way(trace)?;
-        let (contacts, step) = (trace.at.near.len(), way * (1.0 + PAST));
+        let (contacts, step) = (trace.at.near.len(), way * (1.0 + EVENT_OVERSHOOT));
         trace.look_ahead(step);
         if trace.at.near.len() == contacts {
             return Some(ForeseenChange { watch, way, step, is_straight: true });
@@ -63,9 +56,9 @@ fn straight_way(trace: &PathTrace<'_>) -> Option<(Watch, f64)> {
             continue;
         }
         let scale = watch.scale(loading, &here.state, trace.at.totals.force_scale);
-        let constant = if watch.is_of_contact() { CONSTANT } else { CONSTANT_BOUND };
+        let constant = if watch.is_of_contact() { CONSTANT_SLOPE } else { CONSTANT_BOUND_SLOPE };
         if change < -constant * scale {
-            if now <= ZERO * scale {
+            if now <= VANISHING_EVENT_VALUE * scale {
                 return None;
             }
             let way = now / -change;

@@ -9,26 +9,23 @@
 
 use crate::algebra::SystemFactorisation;
 use crate::continuation::contact_changes::simultaneous::may_join_at;
+use crate::continuation::contact_changes::tolerances::{
+    PREDICTED_STEP_RATIO, SMALLEST_DISTANCE_RATIO, SMALLEST_STEP_SHARE,
+};
 use crate::continuation::path_state::step_quantum::quantised;
 use crate::continuation::path_state::trace::PathTrace;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::state::Rate;
-use crate::step::corrector::cached_factorisation::AtHand;
+use crate::step::corrector::cached_factorisation::CachedFactorisation;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
 use crate::step::corrector::tangent;
 use crate::step::event_functions::{self, EventZero, Watch};
 use crate::step::event_location::StepPoints;
 use crate::step::interpolation::PlacedPoint;
-use crate::step::segment::{Attempt, PASSED, StepStart, may_turn};
-
-/// Length of the step relative to the distance to the predicted change: the prediction is not exact.
-const PAST: f64 = 1.25;
-/// Smallest distance of the change, relative to the prediction, that is accepted; the largest is the end of the step.
-const LEAST_OF_WAY: f64 = 0.5;
-/// Smallest part of its intended length to which a step is cut.
-const LEAST: f64 = 1.0 / 256.0;
+use crate::step::segment::{Attempt, StepStart, may_turn};
+use crate::step::tolerances::EVENT_TOLERANCE;
 
 /// A contact change, or the end of a stage, predicted by the rates.
 #[derive(Debug, Clone, Copy)]
@@ -59,7 +56,7 @@ pub(crate) fn step_to_foreseen_change(
         let slope = watch.slope(loading, &here.modes, &here.state, rate).filter(|slope| *slope < 0.0)?;
         let value = watch.value(loading, &here.modes, &here.state, rate);
         // A quantity that is zero at the present point has just changed.
-        let is_above = watch.is_above(loading, &here.state, value, PASSED, trace.at.totals.force_scale);
+        let is_above = watch.is_above(loading, &here.state, value, EVENT_TOLERANCE, trace.at.totals.force_scale);
         is_above.then(|| value / -slope)
     };
     let watches = event_functions::of_mode(loading, &here.modes, &here.state, rate);
@@ -68,8 +65,8 @@ pub(crate) fn step_to_foreseen_change(
     if may_join && ways().filter(|(_, way)| *way < step).all(|(watch, _)| may_join_at(loading, &here.modes, watch)) {
         return None;
     }
-    let part = PAST * way / step;
-    let step = step * quantised(part.max(LEAST));
+    let part = PREDICTED_STEP_RATIO * way / step;
+    let step = step * quantised(part.max(SMALLEST_STEP_SHARE));
     (part < 1.0).then_some(ForeseenChange { watch: first, way, step, is_straight: false })
 }
 
@@ -77,7 +74,7 @@ pub(crate) fn step_to_foreseen_change(
 pub(crate) fn meet_change(
     start: &StepStart<'_>,
     foreseen: ForeseenChange,
-    at_hand: Option<AtHand>,
+    cached: Option<CachedFactorisation>,
     before: Option<&PlacedPoint>,
     ends: &[End],
     load_sign: f64,
@@ -92,7 +89,7 @@ pub(crate) fn meet_change(
     let guess = guess.unwrap_or_else(|| start.state.advanced(start.rate, way));
     let scale = watch.scale(start.loading, &guess, start.force_scale);
     let closing = EventZero { watch, scale, towards: start.rate };
-    let own = at_hand.filter(|_| is_straight).and_then(|at_hand| at_hand.along(&system, start.rate));
+    let own = cached.filter(|_| is_straight).and_then(|cached| cached.along(&system, start.rate));
     let mut serving = None;
     let guess = system.iterate(guess);
     let corrected = newton::correct_with(&system, guess, &closing, start.force_scale, own, &mut serving, work).ok()?;
@@ -107,7 +104,7 @@ pub(crate) fn meet_change(
     let falls = watch.slope(start.loading, start.modes, state, &reached.rate).is_some_and(|slope| slope < 0.0);
     let is_zero = start.value(watch, state, &reached.rate).abs() <= start.zero(watch, &reached);
     let turns = may_turn(start.rate.product(&reached.rate)).is_err();
-    if !falls || !is_zero || turns || reached.step > step || reached.step < LEAST_OF_WAY * way {
+    if !falls || !is_zero || turns || reached.step > step || reached.step < SMALLEST_DISTANCE_RATIO * way {
         return None;
     }
     let watches = start.watches(ends, load_sign);

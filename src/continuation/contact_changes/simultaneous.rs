@@ -38,6 +38,7 @@
 use crate::algebra::SystemFactorisation;
 use crate::branching::bifurcation::singularity::test_functions::{Signature, negative_eigenvalues};
 use crate::continuation::contact_changes::linear_complementarity::{Complementary, complementary};
+use crate::continuation::contact_changes::tolerances::LONGEST_PATH_RATIO;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::size;
 use crate::mechanics::equations::ModeSystem;
@@ -52,16 +53,14 @@ use crate::step::corrector::newton;
 use crate::step::corrector::single_iteration;
 use crate::step::corrector::tangent;
 use crate::step::event_functions::{self, Watch};
-use crate::step::segment::{Attempt, COINCIDING, PASSED, Reached, StepStart, may_turn};
+use crate::step::segment::{Attempt, Reached, StepStart, may_turn};
+use crate::step::tolerances::{COINCIDENCE_TOLERANCE, EVENT_TOLERANCE};
 use std::collections::BTreeSet;
 
 /// Largest number of violating contacts, relative to those of the first mode: more indicate that the modes diverge.
 const MOST_RISE: usize = 2;
 /// Largest number of modes tried at the end of a step.
 const MOST_ROUNDS: usize = 12;
-
-/// Assumed bound of the length of a path with kinks, relative to its chord; not proven.
-const LONGEST: f64 = 4.0;
 
 /// The end of a step that contains contact changes.
 pub(crate) struct Joined {
@@ -162,7 +161,7 @@ pub(crate) fn join_foreseen(
         single_iteration::iterated_once(&system, start.state.advanced(start.rate, step), &closing, work)?;
     let rate = single_iteration::direction_about(&system, &state, &factorisation, start.rate)?;
     let negative = |watch: &Watch| {
-        start.value(*watch, &state, &rate) < -PASSED * watch.scale(start.loading, &state, start.force_scale)
+        start.value(*watch, &state, &rate) < -EVENT_TOLERANCE * watch.scale(start.loading, &state, start.force_scale)
     };
     let passed: Vec<Watch> = watches.iter().copied().filter(negative).collect();
     let first = joinable(start, &watches, &passed, step)?;
@@ -216,7 +215,7 @@ pub(crate) fn may_join(start: &StepStart<'_>) -> bool {
 /// Whether no event that depends on its place can occur within a step, where a quantity may vanish and return at the
 /// kinks. The load is monotonic; no displacement exceeds the length of the path.
 fn leaves_no_trace(start: &StepStart<'_>, watches: &[Watch], step: f64) -> bool {
-    let length = LONGEST * step;
+    let length = LONGEST_PATH_RATIO * step;
     watches.iter().all(|watch| {
         let value = start.value(*watch, start.state, start.rate);
         match *watch {
@@ -332,7 +331,7 @@ fn settled(
 pub(crate) fn broken(start: &StepStart<'_>, modes: &[Mode], state: &State, forces: f64) -> Option<Vec<usize>> {
     let broken = event_functions::of_mode(start.loading, modes, state, start.rate).into_iter().filter(|watch| {
         let value = watch.value(start.loading, modes, state, start.rate);
-        value < -PASSED * watch.scale(start.loading, state, forces)
+        value < -EVENT_TOLERANCE * watch.scale(start.loading, state, forces)
     });
     broken.map(|watch| smooth(start.loading, watch)).collect()
 }
@@ -355,8 +354,8 @@ fn nothing_else_ends(
         }
         let last = watch.value(start.loading, start.modes, state, &reached.rate);
         let dips = |zero| watch.dip(start.loading, start.modes, ends.0, ends.1, reached.step, zero).is_some();
-        if watch.is_above_zero(start.loading, state, last, COINCIDING, forces)
-            && !(dips(0.0) && dips(PASSED * watch.scale(start.loading, state, forces)))
+        if watch.is_above_zero(start.loading, state, last, COINCIDENCE_TOLERANCE, forces)
+            && !(dips(0.0) && dips(EVENT_TOLERANCE * watch.scale(start.loading, state, forces)))
         {
             continue;
         }

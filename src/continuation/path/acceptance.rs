@@ -5,7 +5,7 @@ use crate::continuation::path::classification::{self, Arrival, Came};
 use crate::continuation::path::stages;
 use crate::continuation::path::step_control::{self, AcceptedStep};
 use crate::continuation::path_state::progress::{Arriving, Phase};
-use crate::continuation::path_state::tolerances::ROUND_OFF;
+use crate::continuation::path_state::tolerances::REACTION_ROUND_OFF;
 use crate::continuation::path_state::trace::{Emitted, PathTrace};
 use crate::mechanics::contact::{Mode, Reaction, all_continue};
 use crate::mechanics::problem::natural_residual;
@@ -116,7 +116,7 @@ fn tell_end_of_stage(point: &mut Point, stage: &str) {
 /// Whether reactions differ from those with which a step arrived: the contacts of a node may share its force in another
 /// way in the continuation of the path, but do not yet share it so at the point.
 fn is_anew(trace: &PathTrace<'_>, arrived: &[Reaction]) -> bool {
-    let round_off = ROUND_OFF * trace.at.totals.force_scale;
+    let round_off = REACTION_ROUND_OFF * trace.at.totals.force_scale;
     let now = trace.at.here.state.reactions.iter();
     now.zip(arrived).any(|(now, arrived)| now.difference(arrived) > round_off)
 }

@@ -1,7 +1,9 @@
 //! A path along a direction that another path did not take.
 
-use crate::branching::directions::choice::{DirectionChoice, STATIONARY};
+use crate::branching::directions::choice::DirectionChoice;
+use crate::branching::directions::tolerances::STATIONARY_LOAD_RATE;
 use crate::continuation::path::checkpoint::CheckpointError;
+use crate::step::tolerances::BOUND_TOLERANCE;
 
 use crate::continuation::path_state::progress::{Followed, Phase, StageCounts};
 use crate::continuation::path_state::totals::Totals;
@@ -11,7 +13,6 @@ use crate::continuation::path_state::visited_states;
 use crate::mechanics::contact::all_continue;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::result::increment::{Increment, Point, PointKind};
-use crate::step::segment::AT_END;
 
 /// A separate path from a point along one of the directions listed there: see `Path::follow`.
 pub(crate) fn along(
@@ -84,11 +85,11 @@ fn turn(trace: &mut PathTrace<'_>, choice: &DirectionChoice) {
 fn goes_past_end(trace: &PathTrace<'_>, choice: &DirectionChoice) -> bool {
     trace.scene.stages[trace.at.stage].ends.iter().any(|end| match *end {
         End::Load { bound, sign } => {
-            sign * (trace.at.here.state.load - bound) >= -AT_END && sign * choice.load_sign >= 0.0
+            sign * (trace.at.here.state.load - bound) >= -BOUND_TOLERANCE && sign * choice.load_sign >= 0.0
         }
         End::Displacement { freedom, bound, sign } => {
-            sign * (trace.at.here.state.displacement[freedom] - bound) >= -AT_END
-                && sign * choice.rate.displacement[freedom] > -STATIONARY
+            sign * (trace.at.here.state.displacement[freedom] - bound) >= -BOUND_TOLERANCE
+                && sign * choice.rate.displacement[freedom] > -STATIONARY_LOAD_RATE
         }
         End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_) => false,
     })

@@ -7,22 +7,22 @@ use crate::branching::directions::candidate::FoundDirections;
 use crate::branching::directions::choice::{self, DirectionChoice, PriorMotion};
 use crate::branching::directions::trial_step::later_sign;
 use crate::branching::selection::{decision, second_order};
-use crate::branching::uniqueness::all_slipping::directions_going_on;
+use crate::branching::uniqueness::all_slipping::all_slipping_directions;
 use crate::continuation::path::mpec_verification;
 use crate::continuation::path_state::event_names::describe_change;
-use crate::continuation::path_state::tolerances::{ROUND_OFF, SAME_STATE};
+use crate::continuation::path_state::tolerances::{REACTION_ROUND_OFF, SAME_STATE};
 use crate::continuation::path_state::trace::PathTrace;
 use crate::continuation::path_state::visited_states;
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::mechanics::multi_contact::moving_planes::Carried;
-use crate::mechanics::problem::natural_residual::ZERO;
 use crate::mechanics::problem::node_forces;
 use crate::mechanics::problem::state::Rate;
+use crate::mechanics::problem::tolerances::CONTACT_TOLERANCE;
 use crate::model::request::Method;
 use crate::result::increment::{Point, PointKind};
 use crate::result::stop_reason::StopReason;
-use crate::step::corrector::cached_factorisation::AtHand;
+use crate::step::corrector::cached_factorisation::CachedFactorisation;
 use crate::step::event_functions::Watch;
 
 /// A classified point and the continuation of the path.
@@ -44,7 +44,7 @@ pub(crate) struct Came {
     pub step: f64,
     /// See [`Incoming`].
     pub stopped: Option<usize>,
-    pub nearby: AtHand,
+    pub nearby: CachedFactorisation,
     /// See [`Reached`](crate::step::segment::Reached).
     pub motions: usize,
 }
@@ -130,7 +130,7 @@ fn look_around(
     } else {
         None
     };
-    let at_once = || directions_going_on(loading, &here.state, &standings, &here.modes, incoming, rules);
+    let at_once = || all_slipping_directions(loading, &here.state, &standings, &here.modes, incoming, rules);
     let (options, found) = if let Some(branch_directions::SecondOrderFindings { options, unclear }) = told {
         (options, FoundDirections { degenerate: unclear, ..FoundDirections::default() })
     } else if let Some(options) = at_once() {
@@ -210,8 +210,10 @@ fn smooth_bifurcation(trace: &mut PathTrace<'_>, crossing: Crossing, incoming: &
             .collect();
         let mut found = branch_directions::branches(here, &loose, incoming, crossing.eigenvalues, nulls);
         // The continuation and its reverse keep their modes.
-        let own =
-            found.options.iter_mut().filter(|option| option.rate.product(incoming).abs() > branch_directions::SAME);
+        let own = found.options.iter_mut().filter(|option| {
+            option.rate.product(incoming).abs()
+                > crate::branching::bifurcation::branch_directions::tolerances::COINCIDENCE_COSINE
+        });
         own.for_each(|option| option.modes.clone_from(modes));
         found
     } else {
@@ -229,7 +231,10 @@ fn smooth_bifurcation(trace: &mut PathTrace<'_>, crossing: Crossing, incoming: &
         } else {
             let known = |other: &DirectionChoice| {
                 other.modes == *modes
-                    || found.options.iter().any(|one| one.rate.product(&other.rate) > branch_directions::SAME)
+                    || found.options.iter().any(|one| {
+                        one.rate.product(&other.rate)
+                            > crate::branching::bifurcation::branch_directions::tolerances::COINCIDENCE_COSINE
+                    })
             };
             let others: Vec<DirectionChoice> = others.into_iter().filter(|other| !known(other)).collect();
             found.options.extend(others);
@@ -275,7 +280,7 @@ fn contact_change(trace: &mut PathTrace<'_>, came: &Came) -> Arrival {
     let standings = trace.standings(&trace.at.here.state);
     for (reaction, standing) in trace.at.here.state.reactions.iter_mut().zip(&standings) {
         // The event was located to round-off; the remainder of a reaction that is zero there is dropped.
-        if *standing == Standing::Touching && reaction.size() <= ROUND_OFF * trace.at.totals.force_scale {
+        if *standing == Standing::Touching && reaction.size() <= REACTION_ROUND_OFF * trace.at.totals.force_scale {
             *reaction = Reaction::default();
         }
     }
@@ -351,7 +356,7 @@ fn contact_change(trace: &mut PathTrace<'_>, came: &Came) -> Arrival {
 /// other and slips along both, equilibrium determines the reactions; another distribution of its force begins at rest.
 fn keeps_shares(trace: &PathTrace<'_>, choice: &DirectionChoice) -> bool {
     let (loading, here) = (trace.loading(), &trace.at.here);
-    let (state, zero) = (&here.state, ZERO * trace.rules().force_scale);
+    let (state, zero) = (&here.state, CONTACT_TOLERANCE * trace.rules().force_scale);
     loading.corners.iter().filter(|corner| node_forces::is_in_plane(loading, corner)).all(|corner| {
         let closed = corner.closed(loading, state);
         let slips = |contact: &usize| matches!(here.modes[*contact], Mode::Slip { .. });

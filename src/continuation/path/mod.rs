@@ -24,3 +24,4 @@ pub(crate) mod mpec_verification;
 pub(crate) mod stages;
 pub(crate) mod step_attempt;
 pub(crate) mod step_control;
+pub(crate) mod tolerances;

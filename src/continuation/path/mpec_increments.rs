@@ -13,6 +13,7 @@
 
 use crate::continuation::path::mpec_verification;
 use crate::continuation::path::step_control::AcceptedStep;
+use crate::continuation::path::tolerances::{ADAPTED_ARC_LENGTH, MODE_BOUNDARY_TOLERANCE, POINT_DISTANCE};
 use crate::continuation::path_state::trace::PathTrace;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::equations::ModeSystem;
@@ -32,13 +33,6 @@ use std::sync::Arc;
 const MOST_SEARCHES: usize = 8;
 /// Range of arc lengths, relative to the one sought, from which the refinement starts.
 const NEAR: [f64; 2] = [0.5, 2.0];
-/// Largest relative error of an arc length that counts as adapted.
-const SETTLED: f64 = 1e-2;
-/// Distance (dimensionless) between the refined point and the original one within which they are the same.
-const SAME: f64 = 1e-9;
-/// Reactions relative to the force scale, and gaps relative to the arc length, that are zero on the boundary of two
-/// modes.
-const EDGE: f64 = 1e-6;
 
 /// By-products of the searches for an increment.
 #[derive(Default)]
@@ -104,7 +98,7 @@ fn search_end(trace: &PathTrace<'_>, rate: &Rate, accepted: &AcceptedStep) -> (O
             let is_same = |found: &Reached| {
                 let state = &found.corrected.state;
                 let forces = trace.at.totals.force_scale.max(found.corrected.force_scale);
-                state.distance(&reached.corrected.state) <= SAME * (1.0 + step)
+                state.distance(&reached.corrected.state) <= POINT_DISTANCE * (1.0 + step)
                     && natural_residual::holds(loading, state, forces)
             };
             if let Some(found) = found.filter(|found| is_same(found)) {
@@ -112,7 +106,7 @@ fn search_end(trace: &PathTrace<'_>, rate: &Rate, accepted: &AcceptedStep) -> (O
             }
         }
         // Away from the path: too large a relaxation led the search elsewhere.
-        let is_off = !is_near || (end.size - 1.0).abs() <= SETTLED;
+        let is_off = !is_near || (end.size - 1.0).abs() <= ADAPTED_ARC_LENGTH;
         match search::tighter(relaxation).filter(|_| is_off) {
             Some(tighter) => (start, relaxation) = (predicted.clone(), tighter),
             None => {
@@ -214,11 +208,12 @@ fn is_at_edge(
 ) -> bool {
     let reaction = &state.reactions[contact];
     if one.is_active() != other.is_active() {
-        return loading.gap(contact, state).abs() <= EDGE * step && reaction.size() <= EDGE * forces;
+        return loading.gap(contact, state).abs() <= MODE_BOUNDARY_TOLERANCE * step
+            && reaction.size() <= MODE_BOUNDARY_TOLERANCE * forces;
     }
     let cone = loading.contacts[contact].friction.margin(reaction);
     match (one, other) {
-        (Mode::Slip { .. }, Mode::Slip { .. }) => reaction.tangential_size() <= EDGE * forces,
-        _ => cone.abs() <= EDGE * forces,
+        (Mode::Slip { .. }, Mode::Slip { .. }) => reaction.tangential_size() <= MODE_BOUNDARY_TOLERANCE * forces,
+        _ => cone.abs() <= MODE_BOUNDARY_TOLERANCE * forces,
     }
 }

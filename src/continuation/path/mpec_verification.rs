@@ -6,30 +6,23 @@
 
 use crate::branching::directions::choice::DirectionChoice;
 use crate::complementarity::mpec::Problem;
+use crate::continuation::path::tolerances::{
+    DOUBTFUL_LENGTH, FIRST_TRIAL_SHARE, SHARE_BEFORE_CHANGE, SHORTENING_FACTOR, SHORTEST_RESOLVED_LENGTH,
+    SMALLEST_MODE_EXTENT,
+};
 use crate::continuation::path_state::trace::PathTrace;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::multi_contact::reaction_split::agree;
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::natural_residual::ZERO;
 use crate::mechanics::problem::state::{Rate, State};
+use crate::mechanics::problem::tolerances::CONTACT_TOLERANCE;
 use crate::step::event_functions;
 use crate::step::increment_mpec::certificate;
 use crate::step::increment_mpec::{Arrived, ForeseenModes, IncrementProgram, Named, ProgramCounts};
 use crate::step::segment::{Reached, StepStart};
 
-/// Arc length at which a direction is first verified by the program, as a fraction of the path's next step.
-const FIRST_TRIAL: f64 = 0.25;
-/// Largest part of the distance to the next contact change that this arc length may reach.
-const WITHIN: f64 = 0.5;
-/// Arc length below which the program cannot distinguish changes: its products end at a relaxation of 1e-8.
-const RESOLVED: f64 = 1e-8;
 /// Number of attempts with the whole program, for shorter and shorter increments.
 const TRIALS: usize = 3;
-/// Factor by which the arc length is shortened where the extent of the mode is unknown, and its smallest value.
-const SHORTER: f64 = 0.1;
-const SHORTEST: f64 = 1e-3;
-/// Arc length below which a reaction that has just left a boundary may still be on it within the program's tolerance.
-const NEAR: f64 = 1e-5;
 
 /// Whether the program, started along the present direction, ends in the present mode; where an event ends the step,
 /// before it.
@@ -38,9 +31,9 @@ pub(crate) fn program_keeps_mode(trace: &mut PathTrace<'_>, rate: &Rate, reached
     if is_shown(trace, rate, &modes, reached) {
         return true;
     }
-    let way = if reached.event.is_some() { WITHIN * reached.step } else { step };
+    let way = if reached.event.is_some() { SHARE_BEFORE_CHANGE * reached.step } else { step };
     // This close to the event the program cannot distinguish the modes.
-    way < RESOLVED || is_named(trace, rate, &modes, way, true)
+    way < SHORTEST_RESOLVED_LENGTH || is_named(trace, rate, &modes, way, true)
 }
 
 fn start<'a>(trace: &'a PathTrace<'_>, rate: &'a Rate, modes: &'a [Mode]) -> StepStart<'a> {
@@ -109,30 +102,34 @@ fn is_named(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], step: f64, u
         // A cone may be active on a valid branch.
         return is_named_by_whole(trace, &state, rate, modes, step);
     }
-    if untold && step <= NEAR {
+    if untold && step <= DOUBTFUL_LENGTH {
         // This close to a contact change no result of a search would refute the mode.
         return true;
     }
     let mut tried = step;
-    while tried >= RESOLVED {
+    while tried >= SHORTEST_RESOLVED_LENGTH {
         match show(trace, rate, modes, tried) {
             shown if is_of(trace, &shown, modes) => return true,
             ForeseenModes::EndsAfter(part) => {
-                tried *= WITHIN * part;
+                tried *= SHARE_BEFORE_CHANGE * part;
                 continue;
             }
             ForeseenModes::Named(_) | ForeseenModes::Untold | ForeseenModes::Unclear => {}
         }
         match foresee(trace, &state, rate, modes, tried) {
             ForeseenModes::Named(named) if agree(trace.loading(), &named.modes, modes) => return true,
-            ForeseenModes::EndsAfter(part) => tried *= WITHIN * part.clamp(SHORTEST, 1.0),
-            ForeseenModes::Named(_) | ForeseenModes::Unclear => tried *= SHORTER,
-            ForeseenModes::Untold if tried <= NEAR => return untold,
+            ForeseenModes::EndsAfter(part) => tried *= SHARE_BEFORE_CHANGE * part.clamp(SMALLEST_MODE_EXTENT, 1.0),
+            ForeseenModes::Named(_) | ForeseenModes::Unclear => tried *= SHORTENING_FACTOR,
+            ForeseenModes::Untold if tried <= DOUBTFUL_LENGTH => return untold,
             ForeseenModes::Untold => return is_named_by_whole(trace, &state, rate, modes, tried),
         }
     }
     // This close to a contact change the whole program is no more conclusive than its branch.
-    if step <= NEAR { untold } else { is_named_by_whole(trace, &state, rate, modes, RESOLVED) }
+    if step <= DOUBTFUL_LENGTH {
+        untold
+    } else {
+        is_named_by_whole(trace, &state, rate, modes, SHORTEST_RESOLVED_LENGTH)
+    }
 }
 
 /// The same by the whole program with all its branches.
@@ -143,7 +140,7 @@ fn is_named_by_whole(trace: &mut PathTrace<'_>, state: &State, rate: &Rate, mode
         if named.is_some_and(|named| agree(trace.loading(), &named.modes, modes)) {
             return true;
         }
-        tried *= SHORTER;
+        tried *= SHORTENING_FACTOR;
     }
     false
 }
@@ -166,7 +163,7 @@ fn way_to_next_change(trace: &PathTrace<'_>, modes: &[Mode], rate: &Rate) -> f64
             let value = watch.value(loading, modes, state, rate);
             let slope = watch.slope(loading, modes, state, rate)?;
             // A quantity that is zero at the present point does not lie ahead.
-            (value > ZERO * watch.scale(loading, state, forces) && slope < 0.0).then(|| value / -slope)
+            (value > CONTACT_TOLERANCE * watch.scale(loading, state, forces) && slope < 0.0).then(|| value / -slope)
         })
         .fold(f64::INFINITY, f64::min)
 }
@@ -233,10 +230,10 @@ pub(crate) fn count(trace: &mut PathTrace<'_>, counts: ProgramCounts) {
 ///
 /// Changes occur in clusters: the first trial is no longer than the `last` step.
 pub(crate) fn is_confirmed_by_program(trace: &mut PathTrace<'_>, choice: &DirectionChoice, last: f64) -> bool {
-    let within = WITHIN * way_to_next_change(trace, &choice.modes, &choice.rate);
-    let first = (FIRST_TRIAL * trace.at.step).min(within);
-    let soon = last.max(RESOLVED);
-    within >= RESOLVED
+    let within = SHARE_BEFORE_CHANGE * way_to_next_change(trace, &choice.modes, &choice.rate);
+    let first = (FIRST_TRIAL_SHARE * trace.at.step).min(within);
+    let soon = last.max(SHORTEST_RESOLVED_LENGTH);
+    within >= SHORTEST_RESOLVED_LENGTH
         && (soon < first && is_shown_within(trace, &choice.rate, &choice.modes, soon)
             || is_named(trace, &choice.rate, &choice.modes, first, false))
 }

@@ -13,7 +13,7 @@ use crate::result::increment::{Increment, Point, PointKind};
 use crate::result::stop_reason::StopReason;
 use crate::step::corrector::newton;
 use crate::step::event_functions::Watch;
-use crate::step::segment::AT_END;
+use crate::step::tolerances::BOUND_TOLERANCE;
 
 /// The row with which a stage begins: the directions there, one of them taken. Where a bound of the stage is already
 /// met, the stage ends there too.
@@ -99,7 +99,7 @@ pub(crate) fn next_stage(trace: &mut PathTrace<'_>) -> bool {
 pub(crate) fn at_bound(trace: &mut PathTrace<'_>, rate: &Rate) -> bool {
     let here = &trace.at.here;
     let left = |end: &End| Watch::End(*end).value(trace.loading(), &here.modes, &here.state, rate);
-    let met = trace.scene.stages[trace.at.stage].ends.iter().find(|end| left(end) <= AT_END);
+    let met = trace.scene.stages[trace.at.stage].ends.iter().find(|end| left(end) <= BOUND_TOLERANCE);
     if let Some(End::Load { bound, .. }) = met {
         trace.at.here.state.load = *bound;
     }

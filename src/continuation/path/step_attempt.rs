@@ -8,21 +8,17 @@ use crate::continuation::contact_changes::prediction::ForeseenChange;
 use crate::continuation::contact_changes::simultaneous;
 use crate::continuation::contact_changes::simultaneous::Joined;
 use crate::continuation::path::step_control;
+use crate::continuation::path::tolerances::{LARGEST_SHARE_OF_STEP, NEXT_CHANGE_RATIO};
 use crate::continuation::path_state::progress::PresentPoint;
 use crate::continuation::path_state::trace::PathTrace;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::problem::natural_residual;
 use crate::mechanics::problem::state::Rate;
-use crate::step::corrector::cached_factorisation::AtHand;
+use crate::step::corrector::cached_factorisation::CachedFactorisation;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::event_functions::Watch;
 use crate::step::segment::{Attempt, Reached, Refused, StepStart};
 
-/// Where contacts change one after another, the next change is sought within this multiple of the distance between the
-/// last two, if it is less than this part of a step: over a short distance Newton's method and event location need
-/// little work.
-const NEXT_WITHIN: f64 = 4.0;
-const MOST_OF_STEP: f64 = 0.5;
 /// Largest number of shorter steps tried where a change of signature cannot be resolved.
 const MOST_UNRESOLVED: u64 = 4;
 
@@ -57,7 +53,7 @@ pub(crate) struct Tries {
     /// Signature just past the start.
     known: Option<Signature>,
     /// Factorisation with which the direction was found.
-    at_hand: AtHand,
+    cached: CachedFactorisation,
     /// Number of attempts at which a change of signature could not be resolved.
     pub unresolved: u64,
     /// Whether the last attempt treated changes together; `None` where there were none to treat so.
@@ -65,9 +61,9 @@ pub(crate) struct Tries {
 }
 
 impl Tries {
-    pub fn new(here: &PresentPoint, at_hand: AtHand) -> Self {
-        let next = here.apart.map(|apart| NEXT_WITHIN * apart);
-        Self { next, known: here.signature, at_hand, unresolved: 0, joined: None }
+    pub fn new(here: &PresentPoint, cached: CachedFactorisation) -> Self {
+        let next = here.apart.map(|apart| NEXT_CHANGE_RATIO * apart);
+        Self { next, known: here.signature, cached, unresolved: 0, joined: None }
     }
 }
 
@@ -212,7 +208,7 @@ fn attempt(
     let joins = sought.may_join && !is_straight && simultaneous::may_join(start);
     // A change predicted by the rates is located from the prediction.
     let is_open = !joins && !is_straight && sought.foreseen.is_none();
-    let next = tries.next.take().filter(|next| *next < MOST_OF_STEP * step && is_open);
+    let next = tries.next.take().filter(|next| *next < LARGEST_SHARE_OF_STEP * step && is_open);
     let next = next.and_then(|next| {
         let mut serving = None;
         tries.known = tries.known.or_else(|| Signature::past_start(start, next, &mut serving, work));
@@ -224,9 +220,9 @@ fn attempt(
     }
     let before = here.before.as_ref();
     let foreseen = sought.jump.or(sought.foreseen).filter(|foreseen| foreseen.step == step);
-    let at_hand = here.is_factorised.then(|| std::mem::take(&mut tries.at_hand));
+    let cached = here.is_factorised.then(|| std::mem::take(&mut tries.cached));
     let met =
-        foreseen.and_then(|foreseen| prediction::meet_change(start, foreseen, at_hand, before, ends, load_sign, work));
+        foreseen.and_then(|foreseen| prediction::meet_change(start, foreseen, cached, before, ends, load_sign, work));
     met.map_or_else(|| start.attempt(step, before, None, ends, load_sign, work), Ok)
 }
 

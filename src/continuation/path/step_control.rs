@@ -10,10 +10,15 @@ use crate::continuation::contact_changes::piecewise_linear;
 use crate::continuation::contact_changes::prediction::{self, ForeseenChange};
 use crate::continuation::contact_changes::simultaneous::may_join_at;
 use crate::continuation::path::step_attempt::{self, Sought, Tried, Tries};
+use crate::continuation::path::tolerances::{
+    CREEPING_LENGTH, CREEPING_SHARE, LARGEST_CURVATURE_GROWTH, LARGEST_STEP_GROWTH, LENGTH_PAST_BEND, REJECTION_FACTOR,
+    SHORT_STEP, SMALLEST_COMPLETED_SHARE, SMALLEST_STRETCH, TARGET_IMBALANCE, TARGET_ITERATIONS, TARGET_TURN,
+    WORK_ROUND_OFF,
+};
 use crate::continuation::path::{mpec_increments, mpec_verification};
 use crate::continuation::path_state::step_quantum::quantised;
-use crate::continuation::path_state::tolerances::SAME_STATE;
-use crate::continuation::path_state::totals::{Added, NO_ENERGY};
+use crate::continuation::path_state::tolerances::{ENERGY_ROUND_OFF, SAME_STATE};
+use crate::continuation::path_state::totals::Added;
 use crate::continuation::path_state::trace::PathTrace;
 use crate::mechanics::contact::all_continue;
 use crate::mechanics::equations::ModeSystem;
@@ -30,41 +35,9 @@ use crate::step::event_functions::Watch;
 use crate::step::interpolation::unit;
 use crate::step::segment::{Reached, Refused, StepStart};
 
-/// The turn of the path (radians) for which a step aims.
-const TURN_SOUGHT: f64 = 0.08;
-/// The number of Newton iterations to a small error for which a step aims.
-const ITERATIONS_SOUGHT: f64 = 4.0;
-
-/// The energy imbalance of an increment, relative to the largest energy so far, for which a step aims.
-const IMBALANCE_SOUGHT: f64 = 5e-9;
-/// Round-off in the work of an increment, relative to the largest force times the arc length.
-const ROUNDING_OF_WORK: f64 = 16.0 * f64::EPSILON;
-/// Arc length up to which an imbalance within the round-off of the forces, which is proportional to it, is tolerated.
-const SHORT: f64 = 1e-3;
-
-/// Stretch of a bar at which round-off in displacements of the order of its length rotates it by as much as forces may
-/// be in error.
-const A_POINT: f64 = 1e-6;
-/// A step is repeated with a shorter length if the next step would have to be shorter than this fraction of it.
-const REJECTED: f64 = 0.55;
-
-/// Largest ratio of the next step to the present one.
-const MOST_GROWTH: f64 = 1.8;
-/// Largest growth of the path's curvature, relative to the step before, assumed in the prediction for the next step.
-const MOST_BEND: f64 = 4.0;
-/// Arc length past an unresolved bend at which the path resumes, relative to the square of the width of its arms there:
-/// the chord then deviates from the direction by a fifth, a third of the largest turn of a step.
-const PAST_BEND: f64 = 25.0;
-/// Arc length (dimensionless) below which a step without contact change counts as creeping. Steps grow from the
-/// shortest length distinguishable from round-off to more than this within a few steps.
-const CREEPS: f64 = 2e-8;
-/// The same relative to the longest step requested, where only short steps are.
-const CREEPS_AT_MOST: f64 = 1e-3;
 /// Largest number of consecutive creeping steps: the sharpest bend, there and back, takes fewer at the turn for which a
 /// step aims, and a path that takes more oscillates.
 const MOST_CREEPING: u64 = 48;
-/// A step that ends before this fraction of its attempted length does not let the next be longer.
-const CUT_SHORT: f64 = 0.5;
 
 /// A point reached, with the energies of the increment.
 pub(crate) struct AcceptedStep {
@@ -107,7 +80,7 @@ fn step_along(trace: &mut PathTrace<'_>, rate: &Rate, sought: &mut Sought) -> Re
     let least = trace.scene.analysis.arc_length.min;
     let mut step = sought.step();
     let mut was_shortened = false;
-    let mut tries = Tries::new(&trace.at.here, std::mem::take(&mut trace.at_hand));
+    let mut tries = Tries::new(&trace.at.here, std::mem::take(&mut trace.cached));
     loop {
         if trace.cancel.is_cancelled() {
             return Err(StopReason::Cancelled);
@@ -149,7 +122,7 @@ fn step_along(trace: &mut PathTrace<'_>, rate: &Rate, sought: &mut Sought) -> Re
             Err(refused) => {
                 was_shortened = true;
                 step *= match refused {
-                    Refused::Turned(angle) => (0.5 * TURN_SOUGHT / angle).clamp(0.1, 0.5),
+                    Refused::Turned(angle) => (0.5 * TARGET_TURN / angle).clamp(0.1, 0.5),
                     Refused::Newton(_) => 0.5,
                     Refused::AtStart(_)
                     | Refused::Unlawful
@@ -174,7 +147,7 @@ fn sought_step(trace: &mut PathTrace<'_>) -> Sought {
     let ordinary = trace.at.step.min(trace.scene.analysis.arc_length.max);
     // At a shorter distance from a bend the path is still turning.
     let width = trace.at.here.beside.as_ref().map_or(0.0, Rate::size);
-    let ordinary = ordinary.max(PAST_BEND * width * width);
+    let ordinary = ordinary.max(LENGTH_PAST_BEND * width * width);
     let may_join = trace.at.waiting.is_over() && may_join_changes(trace);
     // Changes within an ordinary step may be several that are treated together.
     let ahead = piecewise_linear::next_event_ahead(trace);
@@ -206,7 +179,7 @@ fn weigh(
         accepted.turned = rate.angle(&unchanged);
     }
     let factor = next_step_factor(trace, &accepted, step, was_shortened);
-    if factor <= REJECTED && step * factor >= least {
+    if factor <= REJECTION_FACTOR && step * factor >= least {
         return Err(factor);
     }
     let factor = factor.min(factor_foreseen(trace, rate, &accepted, step));
@@ -234,7 +207,7 @@ fn weigh(
 pub(crate) fn reason_of_creep(trace: &mut PathTrace<'_>, step: f64, changes: bool) -> Option<StopReason> {
     // Scales larger than the scene's own make every step shorter by the same factor.
     let enlarged = trace.scene.stages[trace.at.stage].enlarged;
-    let bar = (CREEPS / enlarged).min(CREEPS_AT_MOST * trace.scene.analysis.arc_length.max);
+    let bar = (CREEPING_LENGTH / enlarged).min(CREEPING_SHARE * trace.scene.analysis.arc_length.max);
     let creeps = !changes && step < bar;
     trace.at.creeping = if creeps { trace.at.creeping + 1 } else { 0 };
     (trace.at.creeping >= MOST_CREEPING).then(|| reason_of_underflow(trace))
@@ -243,8 +216,8 @@ pub(crate) fn reason_of_creep(trace: &mut PathTrace<'_>, step: f64, changes: boo
 /// Whether some bar has become so short that the displacements no longer determine its direction.
 pub(crate) fn shrinks_to_a_point(trace: &PathTrace<'_>, state: &State) -> bool {
     let structure = &trace.scene.structure;
-    structure.smallest_stretch(&state.displacement) < A_POINT
-        && structure.smallest_stretch(&trace.at.here.state.displacement) >= A_POINT
+    structure.smallest_stretch(&state.displacement) < SMALLEST_STRETCH
+        && structure.smallest_stretch(&trace.at.here.state.displacement) >= SMALLEST_STRETCH
 }
 
 /// Whether contact changes may be treated together: not where every change is requested, or counted.
@@ -343,11 +316,11 @@ fn factor_foreseen(trace: &PathTrace<'_>, rate: &Rate, accepted: &AcceptedStep, 
         return f64::INFINITY;
     };
     let curvature = accepted.turned / accepted.reached.step;
-    let growth = (curvature / curvature_before).min(MOST_BEND);
+    let growth = (curvature / curvature_before).min(LARGEST_CURVATURE_GROWTH);
     if growth <= 1.0 {
         return f64::INFINITY;
     }
-    quantised((TURN_SOUGHT / (curvature * growth * tried)).max(0.2))
+    quantised((TARGET_TURN / (curvature * growth * tried)).max(0.2))
 }
 
 /// Factor of the next step by the path's turn, Newton's iterations and the energy balance.
@@ -355,15 +328,16 @@ fn next_step_factor(trace: &PathTrace<'_>, accepted: &AcceptedStep, tried: f64, 
     let reached = &accepted.reached;
     let done = (reached.step / tried).clamp(0.1, 1.0);
     let turn = accepted.turned / done;
-    let by_turn = TURN_SOUGHT / turn.max(1e-3 * TURN_SOUGHT);
-    let by_work = ITERATIONS_SOUGHT / reached.corrected.iterations_to_small.max(1) as f64;
+    let by_turn = TARGET_TURN / turn.max(1e-3 * TARGET_TURN);
+    let by_work = TARGET_ITERATIONS / reached.corrected.iterations_to_small.max(1) as f64;
     let added = &accepted.added;
     let imbalance = (added.external_work - added.dissipated - (added.strain - trace.at.totals.energy.strain)).abs();
     // Where hardly any energy is stored, the effect of round-off in the displacements on the work says nothing about
     // the step.
-    let rounding = ROUNDING_OF_WORK * trace.at.totals.force_scale.max(reached.corrected.force_scale) * reached.step;
+    let rounding = WORK_ROUND_OFF * trace.at.totals.force_scale.max(reached.corrected.force_scale) * reached.step;
     let imbalance = if imbalance <= rounding { 0.0 } else { imbalance };
-    let floor = (NO_ENERGY * trace.at.totals.force_scale.max(reached.corrected.force_scale)).max(f64::MIN_POSITIVE);
+    let floor =
+        (ENERGY_ROUND_OFF * trace.at.totals.force_scale.max(reached.corrected.force_scale)).max(f64::MIN_POSITIVE);
     let size = trace.at.totals.largest_energy.max(added.external_work.abs()).max(added.strain.abs()).max(floor);
     // Next to stiff elements round-off limits the accuracy of the forces: the energy stored in soft elements alone may
     // be smaller than its effect, whatever the step. A short step is therefore not shortened any further.
@@ -371,15 +345,15 @@ fn next_step_factor(trace: &PathTrace<'_>, accepted: &AcceptedStep, tried: f64, 
         let of_forces = trace.scene.structure.rounding(&reached.corrected.state.displacement);
         reached.step * of_forces.iter().fold(0.0_f64, |most, value| value.max(most))
     };
-    let is_too_large = imbalance > IMBALANCE_SOUGHT * size;
-    let is_none = is_too_large && reached.step <= SHORT && imbalance <= by_stiffness();
-    let imbalance = if is_none { IMBALANCE_SOUGHT * size } else { imbalance };
+    let is_too_large = imbalance > TARGET_IMBALANCE * size;
+    let is_none = is_too_large && reached.step <= SHORT_STEP && imbalance <= by_stiffness();
+    let imbalance = if is_none { TARGET_IMBALANCE * size } else { imbalance };
     // The balance of one increment has an error of fifth order in its arc length.
-    let by_energy = (IMBALANCE_SOUGHT / (imbalance / size).max(1e-3 * IMBALANCE_SOUGHT)).powf(0.2);
+    let by_energy = (TARGET_IMBALANCE / (imbalance / size).max(1e-3 * TARGET_IMBALANCE)).powf(0.2);
     // A step cut short by an event says little about a longer one in the mode that follows. After a step that was too
     // long the next is not lengthened either (E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential
     // Equations I, Springer 1993, section II.4).
-    let most = if done < CUT_SHORT || was_shortened { 1.0 } else { MOST_GROWTH };
+    let most = if done < SMALLEST_COMPLETED_SHARE || was_shortened { 1.0 } else { LARGEST_STEP_GROWTH };
     quantised(by_turn.min(by_work).min(by_energy).clamp(0.2, most))
 }
 

@@ -10,16 +10,15 @@
 //! A contact out of reach is free, without reaction: the equations of the other contacts are those of the whole scene.
 
 use crate::continuation::path_state::progress::Progress;
+use crate::continuation::path_state::tolerances::DISTANCE_ROUND_OFF;
 use crate::continuation::scene::Scene;
-use crate::continuation::scene::recorded_rows::{REACH, fastest};
+use crate::continuation::scene::recorded_rows::fastest;
+use crate::continuation::scene::tolerances::REACH_IN_STEPS;
 use crate::mechanics::contact::ContactPair;
 use crate::mechanics::problem::loading::{LoadPattern, Loading};
 use crate::mechanics::problem::node_forces::Corner;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
-
-/// Relative round-off allowed for in a bound.
-const ROUNDING: f64 = 1e-9;
 
 /// The contacts in reach, with their part of the loading.
 #[derive(Debug, Clone)]
@@ -91,7 +90,7 @@ impl ContactOutOfReach {
     /// A contact with this gap after the path has covered an arc length `travelled`.
     fn at(scene: &Scene, contact: usize, gap: f64, travelled: f64) -> Self {
         let way = gap / fastest(scene, contact);
-        Self { until: travelled + way - ROUNDING * (travelled + way), contact }
+        Self { until: travelled + way - DISTANCE_ROUND_OFF * (travelled + way), contact }
     }
 }
 
@@ -152,7 +151,7 @@ impl Near {
 /// Removes from the contacts out of reach those that could close within a few steps of this arc length, and returns
 /// them.
 pub(crate) fn reached_within(scene: &Scene, at: &Progress, far: &mut FarContacts, step: f64) -> Vec<usize> {
-    let (reach, travelled) = (REACH * step, at.totals.arc_length);
+    let (reach, travelled) = (REACH_IN_STEPS * step, at.totals.arc_length);
     let (mut reached, mut left) = (Vec::new(), Vec::new());
     while far.peek().is_some_and(|next| next.until <= travelled + reach) {
         let Some(ContactOutOfReach { contact, .. }) = far.pop() else { break };

@@ -6,9 +6,10 @@ use crate::continuation::scene::{Reported, Scene};
 use crate::mechanics::contact::vector::{add, dot};
 use crate::mechanics::contact::{Mode, tangents_in_space};
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::natural_residual::{self, ZERO};
+use crate::mechanics::problem::natural_residual;
 use crate::mechanics::problem::node_forces::free_directions;
 use crate::mechanics::problem::state::State;
+use crate::mechanics::problem::tolerances::CONTACT_TOLERANCE;
 use crate::result::increment::{ContactState, Diagnostics, Direction, Energy, Increment, Point, Status};
 use smallvec::smallvec;
 use std::sync::Arc;
@@ -136,7 +137,7 @@ fn contact_rows(scene: &Scene, row: &RowSource<'_>, force_scale: f64) -> (Vec<Co
             };
             // A node that moves along an obstacle without reaction slips, whether the equations solved are those of
             // slip or of no contact.
-            let touches = |state: &State| loading.gap(index, state) <= ZERO;
+            let touches = |state: &State| loading.gap(index, state) <= CONTACT_TOLERANCE;
             let moved = add(&loading.relative(index, row.state), -1.0, &loading.relative(index, row.before));
             let grazes = || {
                 loading.contacts[index].tangents() > 0

@@ -1,14 +1,12 @@
 //! Totals that a path accumulates from increment to increment, with either method.
 
+use crate::continuation::path_state::tolerances::ENERGY_ROUND_OFF;
 use crate::resources::budget::Breach;
 use crate::result::increment::{Energy, Increment};
 use crate::result::report::Report;
 use crate::result::stop_reason::StopReason;
 use crate::step::corrector::cost_counters::Work;
 use serde::{Deserialize, Serialize};
-
-/// Energies below this fraction of the force scale times the displacement scale are round-off.
-pub(crate) const NO_ENERGY: f64 = 1e-12;
 
 /// Sums and maxima from the start of the path, dimensionless.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -71,7 +69,7 @@ impl Totals {
     /// `|external work - strain - dissipated|` over the largest energy so far.
     pub fn energy_error(&self) -> f64 {
         let imbalance = (self.energy.external_work - self.energy.strain - self.energy.dissipated).abs();
-        let size = self.largest_energy.max(NO_ENERGY * self.force_scale);
+        let size = self.largest_energy.max(ENERGY_ROUND_OFF * self.force_scale);
         if size > 0.0 { imbalance / size } else { 0.0 }
     }
 

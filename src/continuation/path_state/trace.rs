@@ -13,15 +13,15 @@ use crate::mechanics::multi_contact::contact_status::{Standing, standings};
 use crate::mechanics::multi_contact::moving_planes::Carried;
 use crate::mechanics::multi_contact::spatial::taken_over;
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::natural_residual::NO_FORCE;
 use crate::mechanics::problem::node_forces::{is_in_plane, taken_apart, total_force};
 use crate::mechanics::problem::state::State;
+use crate::mechanics::problem::tolerances::NEGLIGIBLE_FORCE;
 use crate::resources::budget::Breach;
 use crate::resources::cancel::CancelFlag;
 use crate::result::increment::{Increment, Point};
 use crate::result::program_iterate::ProgramIterate;
 use crate::result::stop_reason::{Outcome, StopReason};
-use crate::step::corrector::cached_factorisation::AtHand;
+use crate::step::corrector::cached_factorisation::CachedFactorisation;
 use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::Instant;
@@ -39,7 +39,7 @@ pub(crate) struct PathTrace<'a> {
     pub near: Near,
     pub far: FarContacts,
     /// Factorisation for the next step.
-    pub at_hand: AtHand,
+    pub cached: CachedFactorisation,
     /// Iterates of the programs of the last increment, where they are kept.
     pub iterates: Option<Vec<ProgramIterate>>,
 }
@@ -61,7 +61,7 @@ impl<'a> PathTrace<'a> {
             at,
             near,
             far,
-            at_hand: AtHand::default(),
+            cached: CachedFactorisation::default(),
             iterates: None,
         }
     }
@@ -78,7 +78,7 @@ impl<'a> PathTrace<'a> {
         let analysis = &self.scene.analysis;
         let loads = || self.scene.stages[self.at.stage].pattern.forces.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let so_far = self.at.totals.force_scale;
-        let force_scale = if so_far > NO_FORCE { so_far } else { loads().max(NO_FORCE) };
+        let force_scale = if so_far > NEGLIGIBLE_FORCE { so_far } else { loads().max(NEGLIGIBLE_FORCE) };
         let effort = Effort { most_modes: analysis.max_modes, certify: !analysis.keep_all, cancel: &self.cancel };
         Rules { selection: analysis.selection, effort, force_scale }
     }
@@ -98,7 +98,7 @@ impl<'a> PathTrace<'a> {
         let elapsed_s = self.elapsed_s();
         self.at.totals.break_off(breach, elapsed_s);
         // The factorisation for the next step occupies memory.
-        self.at_hand = AtHand::default();
+        self.cached = CachedFactorisation::default();
     }
 
     pub(crate) fn standings(&self, state: &State) -> Vec<Standing> {
@@ -109,8 +109,8 @@ impl<'a> PathTrace<'a> {
     pub(crate) fn take(&mut self, decision: &mut Decision) {
         if let Some(index) = decision.taken {
             self.go(&decision.options[index]);
-            self.at_hand = std::mem::take(&mut decision.options[index].at_hand);
-            self.at.here.is_factorised = self.at_hand.is_one();
+            self.cached = std::mem::take(&mut decision.options[index].cached);
+            self.at.here.is_factorised = self.cached.is_one();
         }
     }
 
@@ -155,7 +155,7 @@ impl<'a> PathTrace<'a> {
 
     pub(crate) fn emit(&mut self, mut emitted: Emitted<'_>) -> Increment {
         // The path does not continue from here along the other directions.
-        emitted.options.iter_mut().for_each(|option| option.at_hand = AtHand::default());
+        emitted.options.iter_mut().for_each(|option| option.cached = CachedFactorisation::default());
         let mut state = Cow::Borrowed(&self.at.here.state);
         if let Some(reactions) = emitted.reactions {
             state.to_mut().reactions = reactions;
@@ -202,13 +202,13 @@ impl<'a> PathTrace<'a> {
         if !reached.is_empty() {
             self.at.admit(&reached);
             self.near = Near::of(self.scene, &self.at);
-            (self.at_hand, self.at.here.is_factorised) = (AtHand::default(), false);
+            (self.cached, self.at.here.is_factorised) = (CachedFactorisation::default(), false);
         }
     }
 
     /// Sets up the loading of the running stage, after a change of stage.
     pub(crate) fn load_anew(&mut self) {
-        (self.at_hand, self.at.here.is_factorised) = (AtHand::default(), false);
+        (self.cached, self.at.here.is_factorised) = (CachedFactorisation::default(), false);
         self.near = Near::of(self.scene, &self.at);
     }
 

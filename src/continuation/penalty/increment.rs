@@ -3,14 +3,11 @@
 
 use crate::algebra::Factorisation;
 use crate::continuation::penalty::system::{PenaltyPoint, PenaltySystem};
+use crate::continuation::penalty::tolerances::ROOT_TIE_TOLERANCE;
 use crate::mechanics::problem::state::State;
 use crate::resources::cancel::CancelFlag;
 use crate::step::corrector::cost_counters::Work;
 use nalgebra::DVector;
-
-/// Largest difference of the roots' products with the previous displacements, relative to the square of the arc length,
-/// that counts as zero.
-const NO_TURN: f64 = 1e-12;
 
 /// The equation that closes the system.
 #[derive(Debug, Clone, Copy)]
@@ -182,7 +179,7 @@ fn root(
     let roots = if far == 0.0 { [0.0, 0.0] } else { [far / a, c / far] };
     // Where the load changes and the displacements do not, the loads distinguish the roots.
     let turning = change.displacement.dot(by_load) * (roots[0] - roots[1]);
-    let still = turning.abs() <= NO_TURN * size * size;
+    let still = turning.abs() <= ROOT_TIE_TOLERANCE * size * size;
     let ahead = if still { change.load * (roots[0] - roots[1]) } else { turning };
     Some(if ahead >= 0.0 { roots[0] } else { roots[1] })
 }

@@ -39,5 +39,6 @@ pub(crate) mod step_control;
 pub(crate) mod system;
 #[cfg(test)]
 mod tests;
+pub(crate) mod tolerances;
 
 pub use iterator::RegularisedPath;

@@ -6,14 +6,13 @@ use crate::continuation::penalty::increment::{
 };
 use crate::continuation::penalty::iterator::RegularisedPath;
 use crate::continuation::penalty::system::PenaltyPoint;
+use crate::continuation::penalty::tolerances::LARGEST_STEP_GROWTH;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::structure::elements::COLLAPSED;
 use crate::model::request::LoadSign;
 use crate::result::stop_reason::StopReason;
-use crate::step::segment::AT_END;
+use crate::step::tolerances::BOUND_TOLERANCE;
 
-/// Largest factor by which a step may grow from one increment to the next.
-const MOST_GROWTH: f64 = 2.0;
 /// Largest number of iterations, relative to the desired number.
 const PATIENCE: u64 = 4;
 
@@ -53,7 +52,7 @@ pub(super) fn step(path: &mut RegularisedPath<'_>) -> Result<AcceptedPenaltyStep
         match found.and_then(|converged| end_stage_if_passed(path, converged, size)) {
             Ok(accepted) => {
                 let needed = accepted.converged.iterations.max(1) as f64;
-                let factor = (path.settings.desired_iterations as f64 / needed).sqrt().min(MOST_GROWTH);
+                let factor = (path.settings.desired_iterations as f64 / needed).sqrt().min(LARGEST_STEP_GROWTH);
                 path.step = (size * factor).clamp(least, most);
                 return Ok(accepted);
             }
@@ -94,7 +93,7 @@ fn end_stage_if_passed(
 ) -> Result<AcceptedPenaltyStep, PenaltyFailure> {
     let fraction = |end: &End| {
         let left = left_to(end, &converged.point)?;
-        if left > AT_END {
+        if left > BOUND_TOLERANCE {
             return None;
         }
         let before = left_to(end, &path.here)?;
@@ -113,7 +112,7 @@ fn end_stage_if_passed(
     };
     let last = correct(path, converged.change.scaled(fraction), control)?;
     // A more distant branch may have the same load.
-    if last.change.size(path.settings.load_weight) > size * (1.0 + AT_END) {
+    if last.change.size(path.settings.load_weight) > size * (1.0 + BOUND_TOLERANCE) {
         return Err(PenaltyFailure::NotConverged);
     }
     Ok(AcceptedPenaltyStep { converged: last, stage_ends: true })

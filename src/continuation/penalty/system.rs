@@ -2,18 +2,17 @@
 
 use crate::algebra::null_space;
 use crate::continuation::penalty::law::{Penalties, PenaltyResponse, respond};
+use crate::continuation::penalty::tolerances::UNRESISTED_STIFFNESS;
 use crate::mechanics::contact::Reaction;
 use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::vector::{Vector, add, dot};
 use crate::mechanics::problem::contact_motion;
+use crate::mechanics::problem::equilibrium;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
 use itertools::Itertools;
 use nalgebra::{DMatrix, DVector};
 use smallvec::SmallVec;
-
-/// Stiffness against a motion, relative to that of the elements concerned, below which the motion is not resisted.
-const UNRESISTED: f64 = 1e-10;
 
 /// A converged point.
 #[derive(Debug, Clone)]
@@ -48,16 +47,10 @@ impl PenaltySystem<'_> {
         let structure = self.loading.structure;
         let unknowns = structure.unknowns();
         let mut force = vec![0.0; structure.freedoms()];
-        let mut force_scale = structure.internal_force(&state.displacement, &mut force);
+        let sizes = equilibrium::write_unbalanced(self.loading, state, &mut force);
+        let mut force_scale = sizes.carried.max(sizes.applied);
         let mut tangent = DMatrix::zeros(unknowns, unknowns);
         structure.add_tangent(&state.displacement, &mut tangent);
-        for ((value, pattern), held) in
-            force.iter_mut().zip(&self.loading.pattern.forces).zip(&self.loading.held.forces)
-        {
-            let applied = state.load * pattern + held;
-            force_scale = force_scale.max(applied.abs());
-            *value -= applied;
-        }
         let mut contacts = Vec::with_capacity(from.contacts.len());
         for (index, (contact, before)) in self.loading.contacts.iter().zip(&from.contacts).enumerate() {
             let relative = self.loading.relative(index, state);
@@ -133,13 +126,13 @@ impl PenaltySystem<'_> {
     pub fn is_mechanism(&self, point: &PenaltyPoint) -> bool {
         let structure = self.loading.structure;
         let tangent = self.evaluate(point, &point.state).tangent;
-        let Some(motions) = null_space(&tangent, UNRESISTED) else { return false };
+        let Some(motions) = null_space(&tangent, UNRESISTED_STIFFNESS) else { return false };
         motions.column_iter().any(|motion| {
             let mut rate = vec![0.0; structure.freedoms()];
             for (unknown, value) in motion.iter().enumerate() {
                 rate[structure.freedom_of[unknown]] = *value;
             }
-            structure.resistance(&point.state.displacement, &rate) < UNRESISTED
+            structure.resistance(&point.state.displacement, &rate) < UNRESISTED_STIFFNESS
         })
     }
 }

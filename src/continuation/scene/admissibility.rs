@@ -5,17 +5,13 @@ use crate::algebra::sparse::Bordered;
 use crate::algebra::{Factorisation, null_space};
 use crate::continuation::scene::Scene;
 use crate::continuation::scene::stage_load::StageLoad;
+use crate::continuation::scene::tolerances::{ACCEPTED_IMBALANCE, CLOSED_GAP};
 use crate::mechanics::contact::vector::dot;
 use crate::mechanics::problem::contact_motion;
 use crate::model::request::Model;
 use crate::model::{InputError, InputErrors};
 use itertools::Itertools;
 use nalgebra::{DMatrix, DVector};
-
-/// Contacts with a gap smaller than this (dimensionless) count as closed in the check of the supports.
-const CLOSED: f64 = 1e-10;
-/// Forces at the start below this fraction of the largest are round-off.
-const BALANCED: f64 = 1e-11;
 
 /// Refuses friction between a supported component and an obstacle that are driven against each other: the support
 /// would bear a traction that is no unknown of the path.
@@ -56,7 +52,7 @@ pub(super) fn refuse_imbalance(scene: &Scene) -> Result<(), InputErrors> {
     let largest = structure.internal_force(&vec![0.0; structure.freedoms()], &mut force);
     let unbalanced = structure.freedom_of.iter().map(|freedom| (*freedom, force[*freedom].abs()));
     let Some((freedom, worst)) = unbalanced.max_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(()) };
-    if worst <= BALANCED * largest {
+    if worst <= ACCEPTED_IMBALANCE * largest {
         return Ok(());
     }
     let name = scene.node_name(structure.numbering.node_of(freedom).0);
@@ -102,7 +98,7 @@ fn hold_closed_contacts(scene: &Scene, stiffness: f64, matrix: &mut impl Sink) {
     let still = vec![0.0; structure.freedoms()];
     for contact in &scene.contacts {
         let frame = contact.frame(&[0.0; 3]);
-        if frame.gap > CLOSED {
+        if frame.gap > CLOSED_GAP {
             continue;
         }
         let held = 1 + contact.tangents();

@@ -2,6 +2,7 @@
 
 use crate::continuation::scene::reported::Reported;
 use crate::continuation::scene::stage_load::StageLoad;
+use crate::continuation::scene::tolerances::COINCIDENCE_TOLERANCE;
 use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::kinematics::Kinematics;
 use crate::mechanics::contact::obstacle::RigidSurface;
@@ -11,7 +12,7 @@ use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::node_forces::Corner;
 use crate::mechanics::structure::Structure;
-use crate::mechanics::structure::elements::FiniteElement;
+use crate::mechanics::structure::element_list::ElementList;
 use crate::mechanics::structure::elements::bar::Bar;
 use crate::mechanics::structure::elements::spring::Spring;
 use crate::model::input::limits::PENETRATION_TOLERANCE;
@@ -40,44 +41,40 @@ pub(super) fn build_structure(
         components.iter().map(|component: &request::Component| (numbers[name.as_str()], component.index())).collect()
     };
     let supports: Vec<(usize, usize)> = model.supports.iter().flat_map(of_node).collect();
-    let elements = model
-        .elements
-        .iter()
-        .map(|element| -> Arc<dyn FiniteElement> {
-            match element {
-                request::Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
-                    let nodes = [numbers[nodes[0].as_str()], numbers[nodes[1].as_str()]];
-                    let mut vector = [0.0; 3];
-                    // A difference of the places as given: a place far from the origin causes no loss of digits.
-                    (0..dimension)
-                        .for_each(|k| vector[k] = (model.nodes[nodes[1]][k] - model.nodes[nodes[0]][k]) / length);
-                    let apart = vector.iter().map(|value| value * value).sum::<f64>().sqrt();
-                    Arc::new(Bar {
-                        nodes,
-                        reference: vector,
-                        reference_length: apart,
-                        axial_stiffness: axial_stiffness / force,
-                        rest_length: rest_length.map_or(apart, |rest| rest / length),
-                        prestress: prestress / force,
-                        strain: *strain,
-                    })
-                }
-                request::Element::Spring { nodes, stiffness } => {
-                    let mut matrix = [[0.0; 3]; 3];
-                    for (row, values) in stiffness.iter().enumerate() {
-                        for (column, value) in values.iter().enumerate() {
-                            matrix[row][column] = value / force * length;
-                        }
-                    }
-                    let node = numbers[nodes[0].as_str()];
-                    Arc::new(match nodes.get(1) {
-                        Some(other) => Spring::between([node, numbers[other.as_str()]], matrix),
-                        None => Spring::to_ground(node, matrix),
-                    })
-                }
+    let mut elements = ElementList::default();
+    for element in &model.elements {
+        match element {
+            request::Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
+                let nodes = [numbers[nodes[0].as_str()], numbers[nodes[1].as_str()]];
+                let mut vector = [0.0; 3];
+                // A difference of the places as given: a place far from the origin causes no loss of digits.
+                (0..dimension).for_each(|k| vector[k] = (model.nodes[nodes[1]][k] - model.nodes[nodes[0]][k]) / length);
+                let apart = vector.iter().map(|value| value * value).sum::<f64>().sqrt();
+                elements.push(Bar {
+                    nodes,
+                    reference: vector,
+                    reference_length: apart,
+                    axial_stiffness: axial_stiffness / force,
+                    rest_length: rest_length.map_or(apart, |rest| rest / length),
+                    prestress: prestress / force,
+                    strain: *strain,
+                });
             }
-        })
-        .collect();
+            request::Element::Spring { nodes, stiffness } => {
+                let mut matrix = [[0.0; 3]; 3];
+                for (row, values) in stiffness.iter().enumerate() {
+                    for (column, value) in values.iter().enumerate() {
+                        matrix[row][column] = value / force * length;
+                    }
+                }
+                let node = numbers[nodes[0].as_str()];
+                elements.push(match nodes.get(1) {
+                    Some(other) => Spring::between([node, numbers[other.as_str()]], matrix),
+                    None => Spring::to_ground(node, matrix),
+                });
+            }
+        }
+    }
     Structure::like(like, dimension, model.nodes.len(), &supports, elements)
 }
 
@@ -88,9 +85,6 @@ pub(super) struct Contacts {
     pub reported: Vec<Reported>,
     pub corners: Vec<Corner>,
 }
-
-/// Planes whose normals and gaps (dimensionless) differ by less than this coincide.
-const COINCIDENT: f64 = 1e-13;
 
 pub(super) fn build_contacts(
     model: &Model,
@@ -124,7 +118,7 @@ pub(super) fn build_contacts(
         };
         let neighbours = of_node.entry(node_number).or_default();
         let alike = by_gap.entry(node_number).or_default();
-        let (gap, near) = (built.initial_gap, COINCIDENT * (1.0 + built.initial_gap.abs()));
+        let (gap, near) = (built.initial_gap, COINCIDENCE_TOLERANCE * (1.0 + built.initial_gap.abs()));
         let twin = alike
             .range(ordered(gap - near)..=ordered(gap + near))
             .flat_map(|(_, others)| others.iter().copied())
@@ -148,7 +142,27 @@ pub(super) fn build_contacts(
             shared: false,
         });
     }
-    for (contact, members) in contacts.iter_mut().zip(&members).filter(|(_, members)| members.len() > 1) {
+    share_among_coincident(model, &mut contacts, &members, &mut reported);
+    // In the order of the contacts, so that the numbering does not depend on a hash.
+    let corners = contacts
+        .iter()
+        .enumerate()
+        .filter_map(|(index, contact)| {
+            of_node.get(&contact.kinematics.node()?).filter(|all| all.len() > 1 && all[0] == index)
+        })
+        .map(|contacts| Corner { contacts: contacts.clone() })
+        .collect();
+    Contacts { contacts, contact_names, reported, corners }
+}
+
+/// Divides the reaction of each contact among the coincident contacts of the request that it stands for.
+fn share_among_coincident(
+    model: &Model,
+    contacts: &mut [ContactPair],
+    members: &[Vec<usize>],
+    reported: &mut [Reported],
+) {
+    for (contact, members) in contacts.iter_mut().zip(members).filter(|(_, members)| members.len() > 1) {
         // Equal normal shares, which have the least norm; each contact takes the share of the traction that its
         // friction can carry.
         let number = members.len() as f64;
@@ -162,16 +176,6 @@ pub(super) fn build_contacts(
             contact.friction = CoulombFriction::new(total / number);
         }
     }
-    // In the order of the contacts, so that the numbering does not depend on a hash.
-    let corners = contacts
-        .iter()
-        .enumerate()
-        .filter_map(|(index, contact)| {
-            of_node.get(&contact.kinematics.node()?).filter(|all| all.len() > 1 && all[0] == index)
-        })
-        .map(|contacts| Corner { contacts: contacts.clone() })
-        .collect();
-    Contacts { contacts, contact_names, reported, corners }
 }
 
 /// For each contact that is solved for, the first of its contacts in the request, which provides its data.
@@ -193,7 +197,7 @@ fn ordered(value: f64) -> u64 {
 
 /// Whether two contacts coincide: the same node and the same surface.
 fn coincide(first: &ContactPair, second: &ContactPair) -> bool {
-    let near = |a: &Vector, b: &Vector| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= COINCIDENT);
+    let near = |a: &Vector, b: &Vector| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= COINCIDENCE_TOLERANCE);
     let surfaces = match (&first.obstacle, &second.obstacle) {
         (RigidSurface::Plane { normal: a }, RigidSurface::Plane { normal: b }) => near(a, b),
         (RigidSurface::Ball { offset: a, side: x }, RigidSurface::Ball { offset: b, side: y }) => near(a, b) && x == y,
@@ -202,7 +206,7 @@ fn coincide(first: &ContactPair, second: &ContactPair) -> bool {
     };
     first.kinematics.node() == second.kinematics.node()
         && surfaces
-        && (first.initial_gap - second.initial_gap).abs() <= COINCIDENT
+        && (first.initial_gap - second.initial_gap).abs() <= COINCIDENCE_TOLERANCE
 }
 
 fn build_contact(

@@ -18,11 +18,12 @@ pub(crate) mod recorded_rows;
 pub(crate) mod reported;
 pub(crate) mod scales;
 pub(crate) mod stage_load;
+pub(crate) mod tolerances;
 
 use crate::mechanics::contact::ContactPair;
 use crate::mechanics::problem::node_forces::Corner;
 use crate::mechanics::structure::Structure;
-use crate::mechanics::structure::elements::FiniteElement;
+use crate::mechanics::structure::element_list::ElementList;
 use crate::model::request::{Analysis, JobRequest};
 use crate::model::{InputError, InputErrors};
 use crate::resources::budget::{self, Breach, Budget};
@@ -61,7 +62,7 @@ pub struct Scene {
 /// Elements and contacts that a request cannot express, dimensionless by the scales of the request itself.
 #[derive(Debug, Default)]
 pub(crate) struct AdditionalParts {
-    pub elements: Vec<Arc<dyn FiniteElement>>,
+    pub elements: ElementList,
     /// Contacts, each with the names of its node and its obstacle.
     pub contacts: Vec<(&'static str, &'static str, ContactPair)>,
 }
@@ -117,7 +118,7 @@ impl Scene {
         let RequestScales { length, force, resistances, stretched, structure } = scales;
         let mut structure = build_structure(model, &numbers, length, force, structure.as_ref().or(like));
         if !parts.elements.is_empty() {
-            structure = structure.with_elements(parts.elements);
+            structure = structure.with_elements(&parts.elements);
         }
         let mut left_out = Vec::new();
         let Contacts { mut contacts, mut contact_names, mut reported, corners } =

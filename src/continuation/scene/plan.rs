@@ -1,7 +1,8 @@
 //! Features that a scene does not need, and why: the text of the plan.
 
 use crate::continuation::scene::Scene;
-use crate::continuation::scene::recorded_rows::{REACH, fastest};
+use crate::continuation::scene::recorded_rows::fastest;
+use crate::continuation::scene::tolerances::REACH_IN_STEPS;
 use crate::mechanics::structure::{MOST_ANALYSED, Structure};
 use crate::model::input::limits::MAX_ROWS_UNASKED;
 use crate::model::request::{Analysis, Method};
@@ -60,7 +61,7 @@ fn contacts_out_of_reach(scene: &Scene) -> Vec<LeftOut> {
     if analysis.keep_all || analysis.method == Method::Regularised {
         return Vec::new();
     }
-    let reach = REACH * analysis.arc_length.initial;
+    let reach = REACH_IN_STEPS * analysis.arc_length.initial;
     let gap = |contact: usize| scene.contacts[contact].gap(&[0.0; 3]);
     let is_far = |contact: &usize| gap(*contact) / fastest(scene, *contact) > reach;
     let far = (0..scene.contacts.len()).filter(is_far).count();
@@ -68,7 +69,7 @@ fn contacts_out_of_reach(scene: &Scene) -> Vec<LeftOut> {
     if far > 0 {
         left_out.push(LeftOut {
             what: format!("{far} of {} contacts, each until the path comes near it", scene.contacts.len()),
-            why: format!("their gaps cannot close within {REACH} steps"),
+            why: format!("their gaps cannot close within {REACH_IN_STEPS} steps"),
         });
     }
     if let (true, Some(asked)) = (far > 0, &scene.asked_rows)

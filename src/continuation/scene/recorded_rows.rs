@@ -7,10 +7,6 @@ use crate::model::input::limits::MAX_ROWS_UNASKED;
 use crate::model::request::{ContactRange, Method, RecordedContacts};
 use std::collections::HashSet;
 
-/// Number of steps within which a contact in reach could close: more than the one that is taken, so that computations
-/// past its end (the program of an increment looks three steps ahead) find every contact they need.
-pub(crate) const REACH: f64 = 4.0;
-
 /// The largest change of a contact's gap per unit arc length, in any stage.
 pub(crate) fn fastest(scene: &Scene, contact: usize) -> f64 {
     let shift = scene.stages.iter().fold(0.0_f64, |most, stage| most.max(size(&stage.pattern.shifts[contact])));

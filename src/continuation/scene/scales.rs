@@ -4,15 +4,10 @@ use crate::continuation::scene::build::{
     Contacts, ScaledModel, build_contacts, build_stage, build_structure, first_contacts, norm,
 };
 use crate::continuation::scene::characteristic_stiffness::resisting;
+use crate::continuation::scene::tolerances::{LARGEST_STIFFNESS_RATIO, SIMILAR_STIFFNESS_RATIO};
 use crate::mechanics::structure::Structure;
 use crate::model::request::{self, Analysis, Model};
 use std::collections::HashMap;
-
-/// Stiffnesses that differ by no more than this factor are alike: scales based on them change the increments by no
-/// more.
-const ALIKE: f64 = 2.0;
-/// Largest ratio between a bar's stiffness and the resisting stiffness at which the bar may determine the force scale.
-const FAR: f64 = 100.0;
 
 /// Largest number of stages whose resisting stiffness is computed; later ones use the largest result.
 const MOST_STAGES: usize = 8;
@@ -107,18 +102,27 @@ impl Sizes {
 
     /// Whether any of the elements may determine the scale.
     fn are_alike(&self) -> bool {
-        self.springs.is_empty() && most(&self.bars) <= ALIKE * least(&self.bars)
+        self.springs.is_empty() && most(&self.bars) <= SIMILAR_STIFFNESS_RATIO * least(&self.bars)
     }
 
     /// The softest bar that is not much softer than the resisting stiffness; the resisting stiffness itself, where this
     /// bar is far stiffer. Without bars, the stiffest spring that is not much stiffer, and so on.
     fn near(&self, resisting: f64) -> f64 {
         let near = if self.bars.is_empty() {
-            self.springs.iter().copied().filter(|stiffness| *stiffness <= ALIKE * resisting).reduce(f64::max)
+            self.springs
+                .iter()
+                .copied()
+                .filter(|stiffness| *stiffness <= SIMILAR_STIFFNESS_RATIO * resisting)
+                .reduce(f64::max)
         } else {
-            self.bars.iter().copied().filter(|stiffness| ALIKE * stiffness >= resisting).reduce(f64::min)
+            self.bars
+                .iter()
+                .copied()
+                .filter(|stiffness| SIMILAR_STIFFNESS_RATIO * stiffness >= resisting)
+                .reduce(f64::min)
         };
-        near.filter(|near| *near <= FAR * resisting && resisting <= FAR * near).unwrap_or(resisting)
+        near.filter(|near| *near <= LARGEST_STIFFNESS_RATIO * resisting && resisting <= LARGEST_STIFFNESS_RATIO * near)
+            .unwrap_or(resisting)
     }
 
     /// The median stiffness, used where no stage's load determines one.

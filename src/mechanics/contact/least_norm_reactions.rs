@@ -11,6 +11,7 @@
 //! projection on the circular cone: H. H. Bauschke, *Projection algorithms and monotone operators*, 1996, thm 3.3.6).
 
 use crate::mechanics::contact::coulomb::CoulombFriction;
+use crate::mechanics::contact::tolerances::{REGULARISATION, SHORTEST_STEP, SUFFICIENT_DECREASE, SUM_RESIDUAL};
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size};
 
 /// A friction cone: axis (unit normal) and coefficient.
@@ -24,15 +25,6 @@ pub struct Cone {
 
 /// Largest number of Newton iterations; a few are usual, since the function is piecewise quadratic in 2D.
 const ITERATIONS: usize = 200;
-/// Largest residual of the sum of the reactions, over the largest of the force and the reactions: between nearly
-/// opposite cones the reactions are far larger than the force.
-const LEFT_OVER: f64 = 1e-12;
-/// Multiple of the identity that regularises Newton's matrix, over the residual.
-const REGULAR: f64 = 1e-3;
-/// Sufficient decrease: the function falls by at least this fraction of the decrease that its slope predicts.
-const SUFFICIENT: f64 = 1e-4;
-/// Fraction of the Newton step below which the line search gives up.
-const SHORTEST: f64 = 1e-15;
 
 impl Cone {
     /// The projection of a force on the cone, and the derivative of the projection applied to a vector.
@@ -104,7 +96,7 @@ pub fn least_reactions(cones: &[Cone], free: &[Vector], force: &Vector) -> Optio
     }
     let parts: Vec<Vector> = cones.iter().map(|cone| cone.project(&at.place).0).collect();
     let largest = parts.iter().map(size).fold(1.0, f64::max);
-    (at.left_over <= LEFT_OVER * largest).then(|| parts.iter().map(|part| scaled(part, scale)).collect())
+    (at.left_over <= SUM_RESIDUAL * largest).then(|| parts.iter().map(|part| scaled(part, scale)).collect())
 }
 
 /// The convex function whose minimiser gives the reactions, for a force of unit size.
@@ -145,7 +137,7 @@ impl Dual<'_> {
     /// Newton's. It is shortened until the function decreases sufficiently (D. Li, M. Fukushima, L. Qi, N. Yamashita,
     /// Comput. Optim. Appl. 28 (2004) 131). `None` where rounding prevents a further decrease.
     fn step(&self, at: &At) -> Option<At> {
-        let mut matrix = nalgebra::Matrix3::identity() * (REGULAR * at.left_over).max(f64::EPSILON);
+        let mut matrix = nalgebra::Matrix3::identity() * (REGULARISATION * at.left_over).max(f64::EPSILON);
         for cone in self.cones {
             let (_, derivative) = cone.project(&at.place);
             for column in 0..3 {
@@ -159,9 +151,9 @@ impl Dual<'_> {
         let step = [step[0], step[1], step[2]];
         let slope = dot(&at.gradient, &step);
         let mut length = 1.0;
-        while length > SHORTEST {
+        while length > SHORTEST_STEP {
             let next = self.at(add(&at.place, -length, &step));
-            let falls = next.value <= at.value - SUFFICIENT * length * slope;
+            let falls = next.value <= at.value - SUFFICIENT_DECREASE * length * slope;
             // Near the minimum the values differ by less than their rounding.
             if (falls && next.left_over < f64::INFINITY) || next.left_over <= 0.5 * at.left_over {
                 return Some(next);

@@ -12,6 +12,7 @@ pub(crate) mod frame;
 pub mod kinematics;
 pub mod least_norm_reactions;
 pub mod obstacle;
+pub(crate) mod tolerances;
 pub mod vector;
 
 use coulomb::CoulombFriction;

@@ -1,4 +1,7 @@
 //! Vectors in space; in 2D the third component is 0.
+//!
+//! Plain arrays, because requests, checkpoints and increments store the same numbers as arrays: a vector type of a
+//! library would be converted at each of these places, for the half dozen operations below.
 
 /// A vector with three components.
 pub type Vector = [f64; 3];

@@ -8,7 +8,7 @@
 //! is another closing equation (`step::event_functions`).
 
 use crate::algebra::dense::assembly::Sink;
-use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::equations::{ModeSystem, matrix};
 use crate::mechanics::problem::state::{Rate, State};
 
 /// The closing equation of a point; all quantities are dimensionless.
@@ -62,7 +62,7 @@ impl ClosingEquation for ArcLengthEquation<'_> {
         let (from, size) = (self.from, state.distance(self.from));
         let factor = if size > 0.0 { 1.0 / size } else { 1.0 };
         let along = |freedom: usize| factor * (state.displacement[freedom] - from.displacement[freedom]);
-        system.border_along(matrix, along, factor * (state.load - from.load));
+        matrix::border_along(system, matrix, along, factor * (state.load - from.load));
     }
 
     fn accepts(&self, state: &State) -> bool {

@@ -24,6 +24,7 @@ pub(crate) mod slip_integration;
 pub(crate) mod slip_turning;
 pub(crate) mod solution;
 pub(crate) mod stage_criteria;
+pub(crate) mod tolerances;
 
 use crate::algebra::sparse::Holdings;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
@@ -35,6 +36,7 @@ use crate::mechanics::multi_contact::spatial::{Edge, beside};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces::{free_directions, total_force};
 use crate::mechanics::problem::state::State;
+use nalgebra::DVector;
 use smallvec::SmallVec;
 use std::cell::OnceCell;
 
@@ -106,6 +108,14 @@ struct HeldDirections {
     directions: Vec<Vector>,
 }
 
+/// A motion that the equations leave undetermined and that `deflation` suppresses.
+struct SuppressedMotion {
+    /// The left null vector `ψ`.
+    column: DVector<f64>,
+    /// The motion `φ`, as a row.
+    row: DVector<f64>,
+}
+
 /// The equations of one contact mode.
 pub struct ModeSystem<'a> {
     pub(crate) loading: Loading<'a>,
@@ -120,7 +130,7 @@ pub struct ModeSystem<'a> {
     /// Whether a step shorter than the required one serves as well.
     pub(crate) may_be_shorter: bool,
     /// Suppressed motions: see `deflation`.
-    still: Vec<deflation::Still>,
+    suppressed: Vec<SuppressedMotion>,
     /// Computed when first needed.
     holdings: OnceCell<Holdings>,
     /// See [`Self::held_directions`]; computed when first needed.
@@ -179,7 +189,7 @@ impl<'a> ModeSystem<'a> {
             first_of,
             size: next,
             may_be_shorter: false,
-            still: Vec::new(),
+            suppressed: Vec::new(),
             holdings: OnceCell::new(),
             held: OnceCell::new(),
         }
@@ -193,6 +203,11 @@ impl<'a> ModeSystem<'a> {
     /// Whether some contact slips in a plane.
     pub fn has_tracks(&self) -> bool {
         !self.tracks.is_empty()
+    }
+
+    /// Whether any motion is suppressed.
+    fn is_deflated(&self) -> bool {
+        !self.suppressed.is_empty()
     }
 
     /// The column of a closed contact's normal reaction; its other unknowns follow. The rows of a contact have indices

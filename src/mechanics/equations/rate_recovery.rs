@@ -4,159 +4,166 @@ use crate::algebra::SystemFactorisation;
 use crate::mechanics::contact::vector::{add, cross};
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::equations::solution::Corrected;
-use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, slip_integration};
+use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, factorisation, residual, slip_integration};
 use crate::mechanics::problem::state::{Rate, State};
 use nalgebra::DVector;
 
-impl ModeSystem<'_> {
-    /// The rate of a vector of unknowns at a state.
-    pub fn rate_from(&self, state: &State, values: &DVector<f64>) -> Rate {
-        self.rate_at(&self.iterate(state.clone()), values, Kind::Rates)
-    }
+/// The rate of a vector of unknowns at a state.
+pub fn rate_from(system: &ModeSystem<'_>, state: &State, values: &DVector<f64>) -> Rate {
+    rate_at(system, &system.iterate(state.clone()), values, Kind::Rates)
+}
 
-    /// The rate of a solution at an iterate; `kind` is the kind of the equations solved.
-    pub(crate) fn rate_at(&self, iterate: &Iterate, values: &DVector<f64>, kind: Kind) -> Rate {
-        let mut rate = self.no_rate();
-        self.rate_into(iterate, values, kind, &mut rate);
-        rate
-    }
+/// The rate of a solution at an iterate; `kind` is the kind of the equations solved.
+pub(crate) fn rate_at(system: &ModeSystem<'_>, iterate: &Iterate, values: &DVector<f64>, kind: Kind) -> Rate {
+    let mut rate = no_rate(system);
+    rate_into(system, iterate, values, kind, &mut rate);
+    rate
+}
 
-    /// The norm `‖(u̇, ṡ)‖` of a vector of unknowns.
-    pub(crate) fn length_of(&self, values: &DVector<f64>) -> f64 {
-        let structure = self.loading.structure;
-        let load = values[structure.unknowns()];
-        let motion = |(freedom, unknown): (usize, &Option<usize>)| match unknown {
+/// The norm `‖(u̇, ṡ)‖` of a vector of unknowns.
+pub(crate) fn length_of(system: &ModeSystem<'_>, values: &DVector<f64>) -> f64 {
+    let structure = system.loading.structure;
+    let load = values[structure.unknowns()];
+    let motion = |(freedom, unknown): (usize, &Option<usize>)| match unknown {
+        Some(unknown) => values[*unknown],
+        None => load * system.loading.support_rate(freedom),
+    };
+    let squared: f64 = structure.unknown_of.iter().enumerate().map(motion).map(|velocity| velocity * velocity).sum();
+    (squared + load * load).sqrt()
+}
+
+/// The zero rate, with these contacts and degrees of freedom.
+pub(crate) fn no_rate(system: &ModeSystem<'_>) -> Rate {
+    let displacement = vec![0.0; system.loading.structure.freedoms()];
+    Rate { displacement, load: 0.0, reactions: vec![Reaction::default(); system.roles.len()] }
+}
+
+/// Writes the rate of a solution into `rate`, in which free contacts must have no reaction.
+pub(crate) fn rate_into(
+    system: &ModeSystem<'_>,
+    iterate: &Iterate,
+    values: &DVector<f64>,
+    kind: Kind,
+    rate: &mut Rate,
+) {
+    let structure = system.loading.structure;
+    let load = values[structure.unknowns()];
+    rate.load = load;
+    for (freedom, (value, unknown)) in rate.displacement.iter_mut().zip(&structure.unknown_of).enumerate() {
+        *value = match unknown {
             Some(unknown) => values[*unknown],
-            None => load * self.loading.support_rate(freedom),
+            None => load * system.loading.support_rate(freedom),
         };
-        let squared: f64 =
-            structure.unknown_of.iter().enumerate().map(motion).map(|velocity| velocity * velocity).sum();
-        (squared + load * load).sqrt()
     }
-
-    /// The zero rate, with these contacts and degrees of freedom.
-    pub(crate) fn no_rate(&self) -> Rate {
-        let displacement = vec![0.0; self.loading.structure.freedoms()];
-        Rate { displacement, load: 0.0, reactions: vec![Reaction::default(); self.roles.len()] }
-    }
-
-    /// Writes the rate of a solution into `rate`, in which free contacts must have no reaction.
-    pub(crate) fn rate_into(&self, iterate: &Iterate, values: &DVector<f64>, kind: Kind, rate: &mut Rate) {
-        let structure = self.loading.structure;
-        let load = values[structure.unknowns()];
-        rate.load = load;
-        for (freedom, (value, unknown)) in rate.displacement.iter_mut().zip(&structure.unknown_of).enumerate() {
-            *value = match unknown {
-                Some(unknown) => values[*unknown],
-                None => load * self.loading.support_rate(freedom),
-            };
-        }
-        for (contact, role) in self.roles.iter().enumerate() {
-            let column = self.column_of(contact);
-            rate.reactions[contact] = match role {
-                Role::Free | Role::HeldBy => continue,
-                Role::Stick | Role::Held => {
-                    let normal = self.loading.frame(contact, self.anchor).normal;
-                    let directions = self.held_directions(contact);
-                    // In the frame of the contact the first direction is the normal.
-                    let is_normal = directions[0] == normal;
-                    let others = directions.iter().enumerate().skip(usize::from(is_normal));
-                    let rest = others.fold([0.0; 3], |sum, (k, direction)| add(&sum, values[column + k], direction));
-                    if is_normal {
-                        Reaction { normal: values[column], tangential: rest }
-                    } else {
-                        Reaction::of(&rest, &normal)
-                    }
+    for (contact, role) in system.roles.iter().enumerate() {
+        let column = system.column_of(contact);
+        rate.reactions[contact] = match role {
+            Role::Free | Role::HeldBy => continue,
+            Role::Stick | Role::Held => {
+                let normal = system.loading.frame(contact, system.anchor).normal;
+                let directions = system.held_directions(contact);
+                // In the frame of the contact the first direction is the normal.
+                let is_normal = directions[0] == normal;
+                let others = directions.iter().enumerate().skip(usize::from(is_normal));
+                let rest = others.fold([0.0; 3], |sum, (k, direction)| add(&sum, values[column + k], direction));
+                if is_normal {
+                    Reaction { normal: values[column], tangential: rest }
+                } else {
+                    Reaction::of(&rest, &normal)
                 }
-                Role::Frictionless => Reaction { normal: values[column], tangential: [0.0; 3] },
-                Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => {
-                    let frame = self.loading.frame(contact, &iterate.state);
-                    let friction = self.loading.contacts[contact].friction;
-                    let pressed = friction.bound(iterate.state.reactions[contact].normal);
-                    let direction = self.direction(contact, &frame, iterate);
-                    let mut tangential = friction.traction(values[column], &direction);
-                    if matches!(role, Role::Plane { .. }) {
-                        let across = cross(&frame.normal, &direction);
-                        let per_turn = if kind == Kind::Rates { 1.0 } else { pressed };
-                        tangential = add(&tangential, -per_turn * values[column + 1], &across);
-                    }
-                    if frame.curvature != 0.0 || matches!(role, Role::Edge { .. }) {
-                        let motion = self.loading.relative_rate(contact, &iterate.state, rate);
-                        let change = self.direction_change(contact, iterate, &direction, &motion);
-                        tangential = add(&tangential, -pressed, &change);
-                    }
-                    Reaction { normal: values[column], tangential }
-                }
-            };
-        }
-    }
-
-    /// Subtracts a Newton correction from an iterate, and writes it to `correction` (see [`Self::no_rate`]).
-    pub(crate) fn correct_by(&self, iterate: &mut Iterate, values: &DVector<f64>, correction: &mut Rate) {
-        self.rate_into(iterate, values, Kind::Increment, correction);
-        let Iterate { state, directions } = iterate;
-        state.advance(correction, -1.0);
-        if self.has_tracks() {
-            self.place_exactly(state);
-        }
-        for (contact, role) in self.roles.iter().enumerate() {
-            if let Role::Plane { .. } = role {
-                let frame = self.loading.frame(contact, state);
-                let turn = -values[self.column_of(contact) + 1];
-                directions[contact] = slip_integration::turned(&frame, &directions[contact], turn);
             }
-        }
-        self.make_consistent(iterate);
-    }
-
-    /// The iterate after a Newton correction.
-    pub(crate) fn corrected_by(&self, mut iterate: Iterate, values: &DVector<f64>) -> Iterate {
-        self.correct_by(&mut iterate, values, &mut self.no_rate());
-        iterate
-    }
-
-    /// The modes with the directions of slip at an iterate.
-    pub(crate) fn modes_at(&self, iterate: &Iterate) -> Vec<Mode> {
-        let at = |(contact, mode): (usize, &Mode)| match self.roles[contact] {
+            Role::Frictionless => Reaction { normal: values[column], tangential: [0.0; 3] },
             Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => {
-                let frame = self.loading.frame(contact, &iterate.state);
-                Mode::Slip { direction: self.direction(contact, &frame, iterate) }
+                let frame = system.loading.frame(contact, &iterate.state);
+                let friction = system.loading.contacts[contact].friction;
+                let pressed = friction.bound(iterate.state.reactions[contact].normal);
+                let direction = system.direction(contact, &frame, iterate);
+                let mut tangential = friction.traction(values[column], &direction);
+                if matches!(role, Role::Plane { .. }) {
+                    let across = cross(&frame.normal, &direction);
+                    let per_turn = if kind == Kind::Rates { 1.0 } else { pressed };
+                    tangential = add(&tangential, -per_turn * values[column + 1], &across);
+                }
+                if frame.curvature != 0.0 || matches!(role, Role::Edge { .. }) {
+                    let motion = system.loading.relative_rate(contact, &iterate.state, rate);
+                    let change = system.direction_change(contact, iterate, &direction, &motion);
+                    tangential = add(&tangential, -pressed, &change);
+                }
+                Reaction { normal: values[column], tangential }
             }
-            Role::Free | Role::Frictionless | Role::Stick | Role::Held | Role::HeldBy => *mode,
         };
-        self.modes.iter().enumerate().map(at).collect()
     }
+}
 
-    /// The path's direction in this mode at its anchor or at a converged point: the null vector of the rate equations,
-    /// of unit arc length, on the side of `towards`. `None` where the equations have no such vector or more than one.
-    pub fn tangent(&self, corrected: &Corrected, towards: &Rate) -> Option<Rate> {
-        let iterate = self.iterate_of(corrected);
-        self.tangent_by(&self.bordered(&iterate, towards)?, &iterate)
+/// Subtracts a Newton correction from an iterate, and writes it to `correction` (see [`no_rate`]).
+pub(crate) fn correct_by(system: &ModeSystem<'_>, iterate: &mut Iterate, values: &DVector<f64>, correction: &mut Rate) {
+    rate_into(system, iterate, values, Kind::Increment, correction);
+    let Iterate { state, directions } = iterate;
+    state.advance(correction, -1.0);
+    if system.has_tracks() {
+        residual::place_exactly(system, state);
     }
-
-    pub(crate) fn tangent_by(&self, factorisation: &SystemFactorisation, iterate: &Iterate) -> Option<Rate> {
-        let mut values = self.bordering();
-        if !factorisation.solve(&mut values) {
-            return None;
+    for (contact, role) in system.roles.iter().enumerate() {
+        if let Role::Plane { .. } = role {
+            let frame = system.loading.frame(contact, state);
+            let turn = -values[system.column_of(contact) + 1];
+            directions[contact] = slip_integration::turned(&frame, &directions[contact], turn);
         }
-        self.direction_from(iterate, &values)
     }
+    residual::make_consistent(system, iterate);
+}
 
-    /// The right-hand side whose solution is the path's direction.
-    pub(crate) fn bordering(&self) -> DVector<f64> {
-        let mut values = DVector::zeros(self.size);
-        self.border_into(&mut values);
-        values
-    }
+/// The iterate after a Newton correction.
+pub(crate) fn corrected_by(system: &ModeSystem<'_>, mut iterate: Iterate, values: &DVector<f64>) -> Iterate {
+    correct_by(system, &mut iterate, values, &mut no_rate(system));
+    iterate
+}
 
-    /// Writes this right-hand side into `values`.
-    pub(crate) fn border_into(&self, values: &mut DVector<f64>) {
-        values.fill(0.0);
-        values[self.size - 1] = 1.0;
-    }
+/// The modes with the directions of slip at an iterate.
+pub(crate) fn modes_at(system: &ModeSystem<'_>, iterate: &Iterate) -> Vec<Mode> {
+    let at = |(contact, mode): (usize, &Mode)| match system.roles[contact] {
+        Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => {
+            let frame = system.loading.frame(contact, &iterate.state);
+            Mode::Slip { direction: system.direction(contact, &frame, iterate) }
+        }
+        Role::Free | Role::Frictionless | Role::Stick | Role::Held | Role::HeldBy => *mode,
+    };
+    system.modes.iter().enumerate().map(at).collect()
+}
 
-    /// The rate of a solution of the rate equations, scaled to unit arc length.
-    pub(crate) fn direction_from(&self, iterate: &Iterate, values: &DVector<f64>) -> Option<Rate> {
-        self.rate_at(iterate, values, Kind::Rates).normalised()
+/// The path's direction in this mode at its anchor or at a converged point: the null vector of the rate equations,
+/// of unit arc length, on the side of `towards`. `None` where the equations have no such vector or more than one.
+pub fn tangent(system: &ModeSystem<'_>, corrected: &Corrected, towards: &Rate) -> Option<Rate> {
+    let iterate = system.iterate_of(corrected);
+    tangent_by(system, &factorisation::factorise_bordered(system, &iterate, towards)?, &iterate)
+}
+
+pub(crate) fn tangent_by(
+    system: &ModeSystem<'_>,
+    factorisation: &SystemFactorisation,
+    iterate: &Iterate,
+) -> Option<Rate> {
+    let mut values = bordering(system);
+    if !factorisation.solve(&mut values) {
+        return None;
     }
+    direction_from(system, iterate, &values)
+}
+
+/// The right-hand side whose solution is the path's direction.
+pub(crate) fn bordering(system: &ModeSystem<'_>) -> DVector<f64> {
+    let mut values = DVector::zeros(system.size);
+    border_into(system, &mut values);
+    values
+}
+
+/// Writes this right-hand side into `values`.
+pub(crate) fn border_into(system: &ModeSystem<'_>, values: &mut DVector<f64>) {
+    values.fill(0.0);
+    values[system.size - 1] = 1.0;
+}
+
+/// The rate of a solution of the rate equations, scaled to unit arc length.
+pub(crate) fn direction_from(system: &ModeSystem<'_>, iterate: &Iterate, values: &DVector<f64>) -> Option<Rate> {
+    rate_at(system, iterate, values, Kind::Rates).normalised()
 }

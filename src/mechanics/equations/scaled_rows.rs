@@ -1,6 +1,6 @@
 //! The rows of the equations, scaled by the largest entry of any element, and the tolerance on their rank.
 
-use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::equations::{ModeSystem, matrix};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
 use nalgebra::{DMatrix, DVector};
@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 pub fn scaled_rows(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State) -> (DMatrix<f64>, DVector<f64>) {
     let structure = loading.structure;
     let rows = system.size() - 1;
-    let mut matrix = system.matrix(state).rows(0, rows).into_owned();
+    let mut matrix = matrix::rate_matrix(system, state).rows(0, rows).into_owned();
     let mut sizes = DVector::from_fn(rows, |row, _| matrix.row(row).amax());
     structure.each_stiffness(&state.displacement, &mut |row, _, value| {
         if let Some(row) = structure.unknown_of[row] {
@@ -26,6 +26,3 @@ pub fn scaled_rows(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State)
     }
     (matrix, sizes)
 }
-
-/// Relative pivot that decides the rank of a mode's equations.
-pub(crate) const RANK: f64 = 1e-11;

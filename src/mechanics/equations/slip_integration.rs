@@ -30,6 +30,7 @@
 
 use crate::mechanics::contact::Frame;
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
+use crate::mechanics::equations::tolerances::{LARGEST_SETTLING, SMALLEST_TURN_DIVISOR};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 
@@ -76,12 +77,6 @@ pub(crate) struct Rule {
 
 /// Values of `z` above which the second rule has a weight, and above which it is used alone.
 const SETTLING: [f64; 2] = [2.0, 6.0];
-/// Upper bound on `z`; larger values make no difference.
-const QUICKEST: f64 = 1e8;
-
-/// Speeds (at unit arc length) and friction bounds (over the rate of the reaction) up to this define no turn of a
-/// direction.
-const SMALLEST: f64 = 1e-9;
 
 impl Start {
     /// The direction transported along the geodesic to a point with another normal: rotated by the smallest rotation
@@ -154,7 +149,7 @@ impl Rule {
         let chord_angle = if length > 0.0 { angle(&frame.normal, carried, chord) } else { 0.0 };
         let last = angle(&frame.normal, carried, direction);
         let share = if turn.at_start.is_some() { settling.share() } else { 1.0 };
-        let quickness = settling.quickness.min(QUICKEST);
+        let quickness = settling.quickness.min(LARGEST_SETTLING);
         // `h κ₁` at the direction of the last solve is `z` times the angle `θ* - θ` there.
         let slope = settling.share() * quickness;
         let turned = quickness * settling.ahead - slope * (last - settling.angle);
@@ -202,7 +197,7 @@ pub(crate) fn turn_rate(
     let frame = loading.frame(contact, state);
     let speed = dot(direction, &loading.relative_rate(contact, state, rate));
     let pressed = loading.contacts[contact].friction.bound(state.reactions[contact].normal);
-    if speed <= SMALLEST || pressed <= SMALLEST * rate.reactions[contact].size() {
+    if speed <= SMALLEST_TURN_DIVISOR || pressed <= SMALLEST_TURN_DIVISOR * rate.reactions[contact].size() {
         return None;
     }
     let across = cross(&frame.normal, direction);
@@ -227,12 +222,12 @@ pub(crate) fn settling(
     let turn = -dot(&rate.reactions[contact].tangential, &across);
     let drawn = stiffness * speed + friction.bound(rate.reactions[contact].normal);
     // Without a normal reaction there is no friction to give a direction.
-    if speed <= SMALLEST || drawn <= 0.0 || pressed <= 0.0 {
+    if speed <= SMALLEST_TURN_DIVISOR || drawn <= 0.0 || pressed <= 0.0 {
         return None;
     }
     let carried = start.carried_to(&frame.normal);
     let length = arc(chord, &carried, direction);
     let quickness = drawn * length / (pressed * speed);
     let angle = angle(&frame.normal, &carried, direction);
-    Some(Settling { angle, quickness: quickness.min(QUICKEST), ahead: turn / drawn })
+    Some(Settling { angle, quickness: quickness.min(LARGEST_SETTLING), ahead: turn / drawn })
 }

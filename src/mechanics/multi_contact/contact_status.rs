@@ -3,12 +3,14 @@
 use crate::mechanics::contact::vector::{Vector, direction_of, dot, scaled, size};
 use crate::mechanics::contact::{Mode, Sliding};
 use crate::mechanics::multi_contact::moving_planes::Carried;
-use crate::mechanics::multi_contact::spatial::Pocket;
+use crate::mechanics::multi_contact::spatial::ContactGroup;
+use crate::mechanics::multi_contact::spatial::cone_sum;
+use crate::mechanics::multi_contact::tolerances::CONE_ROUNDING;
 use crate::mechanics::multi_contact::{determinacy, planar};
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::natural_residual::ZERO;
 use crate::mechanics::problem::node_forces;
 use crate::mechanics::problem::state::State;
+use crate::mechanics::problem::tolerances::CONTACT_TOLERANCE;
 
 /// The status of a contact at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,9 +32,6 @@ pub enum Standing {
     },
 }
 
-/// Distance from the friction cone (over the force scale) that may be round-off of the location of an event.
-const ROUND_OFF: f64 = 1e-12;
-
 /// The distance from the friction cone of a contact that counts as zero, for a relative tolerance: relative to the
 /// friction bound `μ r_n` itself, but at least round-off, and at most relative to the forces at the node.
 pub fn none_from_cone(loading: Loading<'_>, contact: usize, state: &State, tolerance: f64, force_scale: f64) -> f64 {
@@ -40,11 +39,11 @@ pub fn none_from_cone(loading: Loading<'_>, contact: usize, state: &State, toler
     let bound = loading.contacts[contact].friction.bound(reaction.normal).abs();
     // The forces at the node lie between the reaction and the force scale, which often decides.
     let least = reaction.size().min(force_scale);
-    if bound <= least && tolerance * bound >= ROUND_OFF * force_scale {
+    if bound <= least && tolerance * bound >= CONE_ROUNDING * force_scale {
         return tolerance * bound;
     }
     let forces = loading.force_scale_at(contact, state, force_scale);
-    (tolerance * bound.min(forces)).max(ROUND_OFF * forces)
+    (tolerance * bound.min(forces)).max(CONE_ROUNDING * forces)
 }
 
 /// The status of every contact.
@@ -57,7 +56,7 @@ pub fn standings(loading: Loading<'_>, state: &State, force_scale: f64) -> Vec<S
             let together = if node_forces::is_in_plane(loading, corner) {
                 standing_of_corner(loading, state, &closed, force_scale)
             } else {
-                standing_in_pocket(loading, state, &closed, force_scale)
+                standing_in_group(loading, state, &closed, force_scale)
             };
             closed.iter().for_each(|contact| standings[*contact] = together);
         }
@@ -65,12 +64,16 @@ pub fn standings(loading: Loading<'_>, state: &State, force_scale: f64) -> Vec<S
     standings
 }
 
-fn standing_in_pocket(loading: Loading<'_>, state: &State, closed: &[usize], force_scale: f64) -> Standing {
-    let pocket = Pocket::new(loading, closed, state);
-    let force = pocket.force(loading, state);
-    let zero = ZERO * force_scale;
+fn standing_in_group(loading: Loading<'_>, state: &State, closed: &[usize], force_scale: f64) -> Standing {
+    let group = ContactGroup::new(loading, closed, state);
+    let force = group.force(loading, state);
+    let zero = CONTACT_TOLERANCE * force_scale;
     let unloaded = size(&force) <= zero;
-    if unloaded || pocket.is_driven || !pocket.ready(&force, zero).is_empty() || pocket.is_at_bound(&force, zero) {
+    if unloaded
+        || group.is_driven
+        || !group.ready(&force, zero).is_empty()
+        || cone_sum::is_at_bound(&group, &force, zero)
+    {
         Standing::Cornered { facets: [true; 2], unloaded, zero }
     } else {
         Standing::Settled(Mode::Stick)
@@ -80,7 +83,7 @@ fn standing_in_pocket(loading: Loading<'_>, state: &State, closed: &[usize], for
 fn standing_of_corner(loading: Loading<'_>, state: &State, closed: &[usize], force_scale: f64) -> Standing {
     let force = node_forces::total_force(loading, closed.iter().copied(), state);
     let scale_at = |contact: &usize| loading.force_scale_at(*contact, state, force_scale);
-    let zero = ZERO * closed.iter().map(scale_at).fold(0.0, f64::max);
+    let zero = CONTACT_TOLERANCE * closed.iter().map(scale_at).fold(0.0, f64::max);
     let unloaded = size(&force) <= zero;
     if Carried::of(loading, closed, state).is_some() {
         return Standing::Cornered { facets: [true; 2], unloaded, zero };
@@ -96,14 +99,18 @@ fn standing_of_corner(loading: Loading<'_>, state: &State, closed: &[usize], for
 
 fn standing(loading: Loading<'_>, state: &State, index: usize, force_scale: f64) -> Standing {
     let (contact, reaction) = (&loading.contacts[index], &state.reactions[index]);
-    if reaction.normal <= 0.0 || loading.is_no_force(index, state, reaction.normal, ZERO, force_scale) {
-        return if loading.gap(index, state) <= ZERO { Standing::Touching } else { Standing::Settled(Mode::Free) };
+    if reaction.normal <= 0.0 || loading.is_no_force(index, state, reaction.normal, CONTACT_TOLERANCE, force_scale) {
+        return if loading.gap(index, state) <= CONTACT_TOLERANCE {
+            Standing::Touching
+        } else {
+            Standing::Settled(Mode::Free)
+        };
     }
     if contact.tangents() == 0 {
         return Standing::Settled(Mode::Slip { direction: [0.0; 3] });
     }
     let bound = contact.friction.bound(reaction.normal);
-    if bound - reaction.tangential_size() > none_from_cone(loading, index, state, ZERO, force_scale) {
+    if bound - reaction.tangential_size() > none_from_cone(loading, index, state, CONTACT_TOLERANCE, force_scale) {
         return Standing::Settled(Mode::Stick);
     }
     let direction = match contact.sliding {

@@ -3,13 +3,11 @@
 
 use crate::mechanics::contact::vector::{Vector, add, dot, size, unit};
 use crate::mechanics::multi_contact::moving_planes::Carried;
-use crate::mechanics::multi_contact::spatial::Pocket;
+use crate::mechanics::multi_contact::spatial::ContactGroup;
+use crate::mechanics::multi_contact::tolerances::INDEPENDENCE_SINE;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces::{free_directions, is_driven, is_in_plane, move_apart};
 use crate::mechanics::problem::state::State;
-
-/// A normal is independent of others where its component perpendicular to them (sine of an angle) exceeds this.
-pub(crate) const INDEPENDENT: f64 = 1e-6;
 
 /// Whether a node is in contact with several obstacles such that the bounds on the forces that hold it are not known:
 /// where the node is driven against the obstacles or they move against each other, with friction or with more reactions
@@ -21,7 +19,7 @@ pub fn is_not_available(loading: Loading<'_>, state: &State) -> bool {
             if is_in_plane(loading, corner) {
                 return !is_driven(loading, &closed) || Carried::of(loading, &closed, state).is_some();
             }
-            Pocket::new(loading, &closed, state).is_determinate_when_sliding()
+            ContactGroup::new(loading, &closed, state).is_determinate_when_sliding()
         };
         closed.len() > 1 && !are_determinate(loading, &closed, state) && !is_known()
     })
@@ -45,7 +43,7 @@ pub(crate) fn are_determinate(loading: Loading<'_>, contacts: &[usize], state: &
         for known in &basis {
             rest = add(&rest, -dot(&rest, known), known);
         }
-        let is_independent = size(&rest) > INDEPENDENT;
+        let is_independent = size(&rest) > INDEPENDENCE_SINE;
         basis.push(if is_independent { unit(&rest) } else { rest });
         data.tangents() == 0 && is_independent
     })

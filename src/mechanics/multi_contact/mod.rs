@@ -17,3 +17,4 @@ pub(crate) mod planar;
 pub mod rate_options;
 pub(crate) mod reaction_split;
 pub(crate) mod spatial;
+pub(crate) mod tolerances;

@@ -20,6 +20,7 @@ use crate::mechanics::contact::obstacle::RigidSurface;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size, unit};
 use crate::mechanics::contact::{Frame, Mode, Reaction};
 use crate::mechanics::multi_contact::reaction_split;
+use crate::mechanics::multi_contact::tolerances::{INDEPENDENCE_SINE, RESTING_VELOCITY};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces::Corner;
 use crate::mechanics::problem::state::{Rate, State};
@@ -34,11 +35,6 @@ pub struct Carried {
     /// Velocity of the carried node per load factor.
     pub(super) velocity: Vector,
 }
-
-/// Velocities (per load factor) below this fraction of those of the planes count as zero.
-pub(super) const STILL: f64 = 1e-12;
-/// Smallest sine of the angle between normals that determine the position of the node.
-const INDEPENDENT: f64 = 1e-6;
 
 impl Carried {
     /// The node of two contacts between moving planes; `None` for contacts of another kind, and for two smooth planes,
@@ -56,7 +52,7 @@ impl Carried {
         let frames = contacts.map(|contact| loading.frame(contact, state));
         let [a, b] = frames.map(|frame| frame.normal);
         let determinant = a[0] * b[1] - a[1] * b[0];
-        if determinant.abs() <= INDEPENDENT {
+        if determinant.abs() <= INDEPENDENCE_SINE {
             return None;
         }
         let [x, y] = [dot(&a, &shifts[0]), dot(&b, &shifts[1])];
@@ -73,7 +69,7 @@ impl Carried {
             let along = dot(&tangent, &add(&self.velocity, -1.0, &self.shifts[place]));
             if !self.frictions[place].is_rough() {
                 Mode::Slip { direction: [0.0; 3] }
-            } else if along.abs() <= STILL * largest {
+            } else if along.abs() <= RESTING_VELOCITY * largest {
                 Mode::Stick
             } else {
                 Mode::Slip { direction: scaled(&tangent, (sign * along).signum()) }

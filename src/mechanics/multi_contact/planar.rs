@@ -15,8 +15,8 @@ use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::vector::{Vector, add, scaled, unit};
 use crate::mechanics::contact::{Frame, Mode};
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::node_forces::FLAT;
 use crate::mechanics::problem::state::State;
+use crate::mechanics::problem::tolerances::OPPOSITE_RAY_ANGLE;
 use std::f64::consts::{PI, TAU};
 
 /// The sum of friction cones in 2D.
@@ -63,10 +63,11 @@ fn sum_of(mut rays: Vec<Vector>) -> Sector {
     }
     free.sort_by(|a, b| b.0.total_cmp(&a.0));
     let inward = match free[..] {
-        [(widest, last, first), ref others @ ..] if widest >= PI - FLAT => {
+        [(widest, last, first), ref others @ ..] if widest >= PI - OPPOSITE_RAY_ANGLE => {
             let across = [-first[1], first[0], 0.0];
             // Half a turn is free on the other side, too: the sum is a line.
-            let is_line = widest <= PI + FLAT && others.first().is_some_and(|(second, ..)| *second >= PI - FLAT);
+            let is_line = widest <= PI + OPPOSITE_RAY_ANGLE
+                && others.first().is_some_and(|(second, ..)| *second >= PI - OPPOSITE_RAY_ANGLE);
             Some([across, if is_line { scaled(&across, -1.0) } else { [last[1], -last[0], 0.0] }])
         }
         _ => None,

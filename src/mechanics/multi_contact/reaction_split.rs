@@ -5,10 +5,12 @@ use crate::mechanics::contact::least_norm_reactions::{Cone, least_reactions};
 use crate::mechanics::contact::vector::{Vector, add, dot, unit};
 use crate::mechanics::contact::{Frame, Mode};
 use crate::mechanics::multi_contact::planar::{rays_in, turn};
-use crate::mechanics::multi_contact::spatial::Pocket;
+use crate::mechanics::multi_contact::spatial::ContactGroup;
+use crate::mechanics::multi_contact::tolerances::ONE_MOTION_COSINE;
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::node_forces::{Corner, FLAT, free_directions, is_in_plane, taken_apart, total_force};
+use crate::mechanics::problem::node_forces::{Corner, free_directions, is_in_plane, taken_apart, total_force};
 use crate::mechanics::problem::state::State;
+use crate::mechanics::problem::tolerances::OPPOSITE_RAY_ANGLE;
 
 /// Whether two lists of modes continue each other. In 2D two active contacts hold their node, so that neither can slip
 /// and their modes are not compared; nor are they in space, unless the contacts slip in one motion.
@@ -27,9 +29,6 @@ pub fn agree(loading: Loading<'_>, first: &[Mode], second: &[Mode]) -> bool {
     (0..first.len()).filter(free_of_corners).all(|contact| first[contact].continues(second[contact]))
 }
 
-/// Smallest cosine of the angle between slips that belong to one motion.
-pub(crate) const ONE_MOTION: f64 = 1.0 - 1e-6;
-
 /// Whether the active contacts of a node in space slip along one line, so that the node slides along an edge.
 pub(crate) fn slip_as_one(active: &[Mode]) -> bool {
     let slips: Vec<Vector> = active
@@ -40,7 +39,9 @@ pub(crate) fn slip_as_one(active: &[Mode]) -> bool {
         })
         .collect();
     let rough: Vec<&Vector> = slips.iter().filter(|direction| **direction != [0.0; 3]).collect();
-    slips.len() == active.len() && slips.len() == 2 && rough.windows(2).all(|pair| dot(pair[0], pair[1]) >= ONE_MOTION)
+    slips.len() == active.len()
+        && slips.len() == 2
+        && rough.windows(2).all(|pair| dot(pair[0], pair[1]) >= ONE_MOTION_COSINE)
 }
 
 /// Replaces the reaction of the first holding contact, which has the total force, by reactions of least norm of all.
@@ -51,10 +52,10 @@ pub fn share(loading: Loading<'_>, corners: &[Corner], modes: &[Mode], state: &m
             continue;
         }
         if !is_in_plane(loading, corner) {
-            let pocket = Pocket::new(loading, &holding, state);
-            let force = pocket.force(loading, state);
-            for (place, part) in pocket.share(&force).into_iter().flatten().enumerate() {
-                state.reactions[holding[place]] = taken_apart(&part, &pocket.frames[place], pocket.frictions[place]);
+            let group = ContactGroup::new(loading, &holding, state);
+            let force = group.force(loading, state);
+            for (place, part) in group.share(&force).into_iter().flatten().enumerate() {
+                state.reactions[holding[place]] = taken_apart(&part, &group.frames[place], group.frictions[place]);
             }
             continue;
         }
@@ -105,13 +106,13 @@ pub(crate) fn along_rays(
     for (index, (first, a)) in all.iter().enumerate() {
         for (second, b) in &all[index + 1..] {
             let determinant = turn(a, b);
-            if determinant.abs() <= FLAT {
+            if determinant.abs() <= OPPOSITE_RAY_ANGLE {
                 continue;
             }
             // The part along `a` takes the remainder, so that the sum is the force however close the rays are.
             let y = turn(a, force) / determinant;
             let x = dot(a, &add(force, -y, b));
-            let round_off = -FLAT * dot(force, force).sqrt();
+            let round_off = -OPPOSITE_RAY_ANGLE * dot(force, force).sqrt();
             if x < round_off || y < round_off {
                 continue;
             }

@@ -14,6 +14,7 @@
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::{add, dot as inner};
 use crate::mechanics::problem::contact_motion;
+use crate::mechanics::problem::equilibrium;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces::reaction_in_space;
 use crate::mechanics::problem::state::{Rate, State, dot};
@@ -84,15 +85,10 @@ pub fn boundary_force(loading: Loading<'_>, at: Placed<'_>) -> (f64, f64) {
     let (state, rate) = at;
     let structure = loading.structure;
     let mut force = vec![0.0; structure.freedoms()];
-    structure.internal_force(&state.displacement, &mut force);
+    equilibrium::write_unbalanced(loading, state, &mut force);
     let mut change = vec![0.0; structure.freedoms()];
-    structure.each_stiffness(&state.displacement, &mut |row, column, value| {
-        change[row] += value * rate.displacement[column];
-    });
-    for freedom in 0..structure.freedoms() {
-        force[freedom] -= state.load * loading.pattern.forces[freedom] + loading.held.forces[freedom];
-        change[freedom] -= rate.load * loading.pattern.forces[freedom];
-    }
+    structure.add_stiffness_times(&state.displacement, &rate.displacement, &mut change);
+    change.iter_mut().zip(&loading.pattern.forces).for_each(|(change, force)| *change -= rate.load * force);
     let (mut sum, mut sum_rate) = (0.0, 0.0);
     for (index, contact) in loading.contacts.iter().enumerate() {
         let (reaction, reaction_rate) = reaction_in_space(loading, index, at);

@@ -5,6 +5,7 @@ use crate::mechanics::contact::{ContactPair, Frame, Reaction};
 use crate::mechanics::problem::contact_motion;
 use crate::mechanics::problem::node_forces::Corner;
 use crate::mechanics::problem::state::{Rate, State};
+use crate::mechanics::problem::tolerances::USUAL_DISPLACEMENT;
 use crate::mechanics::structure::Structure;
 use serde::{Deserialize, Serialize};
 
@@ -54,10 +55,6 @@ pub struct Loading<'a> {
     /// Constant loads of earlier stages.
     pub held: &'a LoadPattern,
 }
-
-/// Lower bound on the displacements (dimensionless) by which the forces that meet at a node are estimated: the scale of
-/// displacements itself, so that the estimate does not vanish for a structure that happens to be undeformed.
-pub(crate) const USUAL: f64 = 1.0;
 
 fn largest_of(vector: &Vector) -> f64 {
     vector.iter().fold(0.0, |largest, value| value.abs().max(largest))
@@ -132,7 +129,7 @@ impl Loading<'_> {
     pub fn forces_meeting_at(&self, contact: usize, state: &State) -> f64 {
         let at_node = |node: &usize| {
             let own = |pattern: &LoadPattern| largest_of(&self.structure.translation_at(*node, &pattern.forces));
-            self.structure.force_size_at(*node, &state.displacement, USUAL)
+            self.structure.force_size_at(*node, &state.displacement, USUAL_DISPLACEMENT)
                 + state.load.abs() * own(self.pattern)
                 + own(self.held)
                 + state.reactions[contact].size()

@@ -5,6 +5,7 @@
 //! | `state` | a point of the path and its derivative by arc length |
 //! | `loading` | the structure under a load pattern and the constant loads of earlier stages |
 //! | `contact_motion` | the motion of a contact with the degrees of freedom, and its forces on them |
+//! | `equilibrium` | what the internal forces leave over against the loads |
 //! | `node_forces` | the forces of all contacts on one node |
 //! | `natural_residual` | the violation of the laws of contact and friction by a state |
 //! | `energy` | external work and dissipation along an increment |
@@ -12,8 +13,10 @@
 
 pub(crate) mod contact_motion;
 pub(crate) mod energy;
+pub(crate) mod equilibrium;
 pub(crate) mod linearity;
 pub(crate) mod loading;
 pub(crate) mod natural_residual;
 pub(crate) mod node_forces;
 pub(crate) mod state;
+pub(crate) mod tolerances;

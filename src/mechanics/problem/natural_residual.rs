@@ -7,9 +7,7 @@
 use crate::mechanics::contact::Reaction;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
-
-/// Largest violation at an accepted point.
-pub const MOST_VIOLATION: f64 = 1e-10;
+use crate::mechanics::problem::tolerances::{ACCEPTED_VIOLATION, NEGLIGIBLE_FORCE};
 
 /// The largest violation over the contacts; gaps dimensionless, reactions over the force scale at their nodes.
 pub fn violation(loading: Loading<'_>, state: &State, force_scale: f64) -> f64 {
@@ -19,10 +17,10 @@ pub fn violation(loading: Loading<'_>, state: &State, force_scale: f64) -> f64 {
         let traction = reaction.tangential_size();
         // The forces at the node are at most the force scale, so that they often need not be computed.
         let obeys = reaction.normal >= 0.0 && traction <= friction.bound(reaction.normal);
-        if obeys && gap <= reaction.normal / force_scale.max(NO_FORCE) {
+        if obeys && gap <= reaction.normal / force_scale.max(NEGLIGIBLE_FORCE) {
             return gap.abs();
         }
-        let scaled = 1.0 / loading.force_scale_at(index, state, force_scale).max(NO_FORCE);
+        let scaled = 1.0 / loading.force_scale_at(index, state, force_scale).max(NEGLIGIBLE_FORCE);
         let normal = reaction.normal * scaled;
         let cone = traction * scaled - friction.bound(normal);
         (-gap).max(-normal).max(gap.min(normal).abs()).max(cone)
@@ -32,14 +30,8 @@ pub fn violation(loading: Loading<'_>, state: &State, force_scale: f64) -> f64 {
 
 /// Whether a state may be a point of the path.
 pub fn holds(loading: Loading<'_>, state: &State, force_scale: f64) -> bool {
-    violation(loading, state, force_scale) <= MOST_VIOLATION
+    violation(loading, state, force_scale) <= ACCEPTED_VIOLATION
 }
-
-/// A gap (dimensionless) or a reaction (over the force scale) of this size is zero.
-pub const ZERO: f64 = 1e-10;
-
-/// Forces (dimensionless) below this count as zero: they are round-off where nothing is loaded.
-pub(crate) const NO_FORCE: f64 = 1e-20;
 
 #[cfg(test)]
 mod tests {

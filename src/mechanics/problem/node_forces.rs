@@ -6,8 +6,8 @@ use crate::mechanics::contact::{Frame, Mode, Reaction, Sliding};
 use crate::mechanics::problem::contact_motion::AXES;
 use crate::mechanics::problem::energy::Placed;
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::natural_residual::ZERO;
 use crate::mechanics::problem::state::{Rate, State};
+use crate::mechanics::problem::tolerances::{CONTACT_TOLERANCE, OPPOSITE_RAY_ANGLE};
 
 /// A node with several contacts.
 #[derive(Debug, Clone)]
@@ -18,7 +18,7 @@ pub struct Corner {
 impl Corner {
     /// The contacts without a gap.
     pub fn closed(&self, loading: Loading<'_>, state: &State) -> Vec<usize> {
-        self.contacts.iter().copied().filter(|contact| loading.gap(*contact, state) <= ZERO).collect()
+        self.contacts.iter().copied().filter(|contact| loading.gap(*contact, state) <= CONTACT_TOLERANCE).collect()
     }
 
     /// The contacts that hold the node together in these modes, the sticking ones first; none where fewer than two are
@@ -32,10 +32,6 @@ impl Corner {
         sticking.chain(self.contacts.iter().filter(move |contact| together && slips(contact))).copied()
     }
 }
-
-/// Rays whose angle is within this of half a turn count as opposite. A force accepted as held then lies outside the
-/// true cone by no more than this fraction of its size.
-pub(crate) const FLAT: f64 = 1e-12;
 
 /// Whether a node is free in the plane, so that the sum of its friction cones is a sector.
 pub fn is_in_plane(loading: Loading<'_>, corner: &Corner) -> bool {
@@ -99,7 +95,7 @@ pub fn taken_apart(force: &Vector, frame: &Frame, friction: CoulombFriction) -> 
     let Reaction { normal, tangential } = Reaction::of(force, &frame.normal);
     // Slightly larger, so that the reaction is within the cone in spite of rounding, however large the force.
     let least = size(&tangential) / friction.coefficient * (1.0 + 4.0 * f64::EPSILON);
-    let is_round_off = least - normal <= FLAT * size(force);
+    let is_round_off = least - normal <= OPPOSITE_RAY_ANGLE * size(force);
     Reaction { normal: if is_round_off { normal.max(least) } else { normal }, tangential }
 }
 

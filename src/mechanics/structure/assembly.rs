@@ -4,35 +4,65 @@
 //! u_e = A_e u,      f_int = Σ_e A_eᵀ f_e(u_e),      K = Σ_e A_eᵀ K_e(u_e) A_e
 //! ```
 //!
-//! `A_e` selects the degrees of freedom of the element `e`; the list [`ElementAt::freedoms`] stands for it.
+//! `A_e` selects the degrees of freedom of the element `e`; the list [`ElementAt::freedoms`] stands for it. Sums run over
+//! the elements in the order of the input.
 
+use crate::mechanics::structure::element_list::{ElementList, ElementRun};
 use crate::mechanics::structure::elements::{FiniteElement, Stretching};
+
+/// Elements that follow one another in a run of one kind, and the degrees of freedom that they join, element by element,
+/// in the order of the elements.
+#[derive(Clone, Copy)]
+pub struct ElementBlock<'a> {
+    run: &'a dyn ElementRun,
+    first: usize,
+    /// Number of an element's degrees of freedom.
+    size: usize,
+    freedoms: &'a [usize],
+}
 
 /// An element and the degrees of freedom that it joins, in the order of the element.
 #[derive(Clone, Copy)]
 pub struct ElementAt<'a> {
     pub element: &'a dyn FiniteElement,
     pub freedoms: &'a [usize],
+    block: ElementBlock<'a>,
 }
 
 /// The degrees of freedom of two nodes in space.
 const FEW: usize = 6;
 
-/// Work memory for one element, reused for the next. Elements of few degrees of freedom need none beside the stack.
-#[derive(Default)]
-pub struct ElementBuffer {
-    few: ([f64; FEW], [[f64; FEW]; FEW]),
+/// Most elements of few degrees of freedom in a block. The numbers of a block stay in the processor's fastest memory.
+const MOST_TOGETHER: usize = 8;
+
+/// Work memory for the displacements of a block and as many entries for what is computed from them, reused for the next
+/// block. Elements of few degrees of freedom need none beside the stack.
+pub struct BlockBuffer<const ENTRIES: usize> {
+    few: ([f64; MOST_TOGETHER * FEW], [f64; ENTRIES]),
     many: (Vec<f64>, Vec<f64>),
 }
 
-impl ElementBuffer {
-    /// The displacement of an element, and room for so many numbers, at most the entries of its tangent.
+/// Work memory for nodal forces.
+pub type ForceBuffer = BlockBuffer<{ MOST_TOGETHER * FEW }>;
+
+/// Work memory for tangents.
+pub type StiffnessBuffer = BlockBuffer<{ MOST_TOGETHER * FEW * FEW }>;
+
+impl<const ENTRIES: usize> Default for BlockBuffer<ENTRIES> {
     #[inline(always)]
-    fn of(&mut self, at: ElementAt<'_>, displacement: &[f64], count: usize) -> (&[f64], &mut [f64]) {
-        let gathered = at.freedoms.iter().map(|freedom| displacement[*freedom]);
-        if at.freedoms.len() <= FEW {
+    fn default() -> Self {
+        Self { few: ([0.0; MOST_TOGETHER * FEW], [0.0; ENTRIES]), many: (Vec::new(), Vec::new()) }
+    }
+}
+
+impl<const ENTRIES: usize> BlockBuffer<ENTRIES> {
+    /// The displacements of a block, and room for so many numbers.
+    #[inline(always)]
+    fn of(&mut self, freedoms: &[usize], displacement: &[f64], count: usize) -> (&[f64], &mut [f64]) {
+        let gathered = freedoms.iter().map(|freedom| displacement[*freedom]);
+        if freedoms.len() <= self.few.0.len() && count <= ENTRIES {
             self.few.0.iter_mut().zip(gathered).for_each(|(own, value)| *own = value);
-            return (&self.few.0[..at.freedoms.len()], &mut self.few.1.as_flattened_mut()[..count]);
+            return (&self.few.0[..freedoms.len()], &mut self.few.1[..count]);
         }
         self.many.0.clear();
         self.many.0.extend(gathered);
@@ -41,87 +71,115 @@ impl ElementBuffer {
     }
 }
 
-impl ElementAt<'_> {
-    /// Calls `add(freedom, force)` with the nodal forces; returns the size of the force that the element carries.
-    pub fn each_force(self, displacement: &[f64], buffer: &mut ElementBuffer, mut add: impl FnMut(usize, f64)) -> f64 {
-        let (own, force) = buffer.of(self, displacement, self.freedoms.len());
-        let carried = self.element.write_force(own, force);
-        self.freedoms.iter().zip(force).for_each(|(freedom, value)| add(*freedom, *value));
+/// The elements of a list in blocks; `freedoms`: the degrees of freedom of all elements, one after the other, each with
+/// those of its nodes.
+pub(super) fn blocks<'a>(
+    elements: &'a ElementList,
+    dimension: usize,
+    freedoms: &'a [usize],
+) -> impl Iterator<Item = ElementBlock<'a>> {
+    let mut left = freedoms;
+    elements.runs().flat_map(move |run| {
+        let size = size_of(run.element(0), dimension);
+        let (of_run, others) = left.split_at(run.count() * size);
+        left = others;
+        let together = if size <= FEW { MOST_TOGETHER } else { 1 };
+        let chunks = of_run.chunks(size * together).enumerate();
+        chunks.map(move |(block, freedoms)| ElementBlock { run, first: block * together, size, freedoms })
+    })
+}
+
+/// Number of an element's degrees of freedom.
+fn size_of(element: &dyn FiniteElement, dimension: usize) -> usize {
+    element.nodes().len() * (dimension + element.rotations())
+}
+
+impl<'a> ElementBlock<'a> {
+    /// Calls `add` with the strain energy of each element.
+    pub fn each_energy(self, displacement: &[f64], buffer: &mut ForceBuffer, add: impl FnMut(f64)) {
+        let (own, energies) = buffer.of(self.freedoms, displacement, self.freedoms.len() / self.size);
+        self.run.write_energies(self.first, self.size, own, energies);
+        energies.iter().copied().for_each(add);
+    }
+
+    /// Calls `add(freedom, force)` with the nodal forces; returns the largest force that one of the elements carries.
+    #[inline(always)]
+    pub fn each_force(self, displacement: &[f64], buffer: &mut ForceBuffer, mut add: impl FnMut(usize, f64)) -> f64 {
+        let (own, forces) = buffer.of(self.freedoms, displacement, self.freedoms.len());
+        let carried = self.run.write_forces(self.first, self.size, own, forces);
+        self.freedoms.iter().zip(forces).for_each(|(freedom, value)| add(*freedom, *value));
         carried
     }
 
     /// Calls `add(freedom, size)` with the size of the terms that make up the nodal forces.
+    #[inline(always)]
     pub fn each_force_size(
         self,
         displacement: &[f64],
         least: f64,
-        buffer: &mut ElementBuffer,
+        buffer: &mut ForceBuffer,
         mut add: impl FnMut(usize, f64),
     ) {
-        let (own, sizes) = buffer.of(self, displacement, self.freedoms.len());
-        self.element.write_force_sizes(own, least, sizes);
+        let (own, sizes) = buffer.of(self.freedoms, displacement, self.freedoms.len());
+        self.run.write_force_sizes(self.first, self.size, own, least, sizes);
         self.freedoms.iter().zip(sizes).for_each(|(freedom, size)| add(*freedom, *size));
     }
 
-    /// Calls `add(row, column, value)` for every entry of the tangent.
+    /// Calls `add(row, column, value)` for every entry of the tangents.
+    #[inline(always)]
     pub fn each_stiffness(
         self,
         displacement: &[f64],
-        buffer: &mut ElementBuffer,
+        buffer: &mut StiffnessBuffer,
         add: &mut impl FnMut(usize, usize, f64),
     ) {
-        let count = self.freedoms.len();
-        let (own, stiffness) = buffer.of(self, displacement, count * count);
-        self.element.write_stiffness(own, stiffness);
-        self.each_entry(stiffness, add);
+        let (own, stiffnesses) = buffer.of(self.freedoms, displacement, self.freedoms.len() * self.size);
+        self.run.write_stiffnesses(self.first, self.size, own, stiffnesses);
+        self.each_entry(stiffnesses, add);
     }
 
-    /// As [`each_stiffness`](Self::each_stiffness), without the summands that [`stretching`](Self::stretching) lists.
+    /// As [`each_stiffness`](Self::each_stiffness), without the summands that [`ElementAt::stretching`] lists.
     pub fn each_stiffness_across(
         self,
         displacement: &[f64],
-        buffer: &mut ElementBuffer,
+        buffer: &mut StiffnessBuffer,
         add: &mut impl FnMut(usize, usize, f64),
     ) {
-        let count = self.freedoms.len();
-        let (own, stiffness) = buffer.of(self, displacement, count * count);
-        self.element.write_stiffness_across(own, stiffness);
-        self.each_entry(stiffness, add);
+        let (own, stiffnesses) = buffer.of(self.freedoms, displacement, self.freedoms.len() * self.size);
+        self.run.write_stiffnesses_across(self.first, self.size, own, stiffnesses);
+        self.each_entry(stiffnesses, add);
     }
 
-    /// Calls `add` with the entries of a matrix of the element, ordered by pairs of components; for each pair, the
+    /// Calls `add` with the entries of a matrix of each element, ordered by pairs of components; for each pair, the
     /// entries of a node with itself come first. Sums over the columns of a row thus add the entries of one component
     /// together.
-    fn each_entry(self, matrix: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
-        match (self.element.nodes().len(), self.freedoms.len()) {
-            (2, 4) => each_entry_of_pair::<2>(self.freedoms, matrix, add),
-            (2, 6) => each_entry_of_pair::<3>(self.freedoms, matrix, add),
-            (nodes, _) => self.each_entry_of(nodes, matrix, add),
+    #[inline(always)]
+    fn each_entry(self, matrices: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
+        let nodes = self.run.element(self.first).nodes().len();
+        let own = self.freedoms.chunks_exact(self.size).zip(matrices.chunks_exact(self.size * self.size));
+        match (nodes, self.size) {
+            (2, 4) => own.for_each(|(freedoms, matrix)| each_entry_of_pair::<2>(freedoms, matrix, add)),
+            (2, 6) => own.for_each(|(freedoms, matrix)| each_entry_of_pair::<3>(freedoms, matrix, add)),
+            _ => own.for_each(|(freedoms, matrix)| each_entry_of(nodes, freedoms, matrix, add)),
         }
     }
+}
 
-    /// As [`each_entry`](Self::each_entry), for any number of nodes.
-    fn each_entry_of(self, nodes: usize, matrix: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
-        let count = self.freedoms.len();
-        let of_node = count / nodes;
-        for row in 0..of_node {
-            for column in 0..of_node {
-                let mut entry = |first: usize, second: usize| {
-                    let (row, column) = (first * of_node + row, second * of_node + column);
-                    add(self.freedoms[row], self.freedoms[column], matrix[row * count + column]);
-                };
-                (0..nodes).for_each(|node| entry(node, node));
-                for first in 0..nodes {
-                    (0..nodes).filter(|second| *second != first).for_each(|second| entry(first, second));
-                }
-            }
-        }
+impl<'a> ElementAt<'a> {
+    pub(super) fn new(run: &'a dyn ElementRun, index: usize, freedoms: &'a [usize]) -> Self {
+        let block = ElementBlock { run, first: index, size: freedoms.len(), freedoms };
+        Self { element: run.element(index), freedoms, block }
+    }
+
+    /// The element as a block of its own.
+    pub fn alone(self) -> ElementBlock<'a> {
+        self.block
     }
 
     /// The summands `k c cᵀ` of the tangent by which the element resists stretching.
     pub fn stretching(self, displacement: &[f64]) -> impl Iterator<Item = Stretching> {
-        let (mut buffer, freedoms) = (ElementBuffer::default(), self.freedoms);
-        let own = self.element.stretching(buffer.of(self, displacement, 0).0);
+        let freedoms = self.freedoms;
+        let own = self.element.stretching(ForceBuffer::default().of(freedoms, displacement, 0).0);
         own.into_iter().map(|mut stretching| {
             stretching.along.iter_mut().for_each(|(freedom, _)| *freedom = freedoms[*freedom]);
             stretching
@@ -129,18 +187,36 @@ impl ElementAt<'_> {
     }
 
     /// The stiffness against a motion, expressed as an axial stiffness.
-    pub fn axial_stiffness(self, motion: &[f64], buffer: &mut ElementBuffer) -> f64 {
-        self.element.axial_stiffness(buffer.of(self, motion, 0).0)
+    pub fn axial_stiffness(self, motion: &[f64], buffer: &mut ForceBuffer) -> f64 {
+        self.element.axial_stiffness(buffer.of(self.freedoms, motion, 0).0)
     }
 
     /// Strain energy.
-    pub fn energy(self, displacement: &[f64], buffer: &mut ElementBuffer) -> f64 {
-        self.element.energy(buffer.of(self, displacement, 0).0)
+    pub fn energy(self, displacement: &[f64], buffer: &mut ForceBuffer) -> f64 {
+        self.element.energy(buffer.of(self.freedoms, displacement, 0).0)
     }
 
     /// The stretch `L/L0` of an element that may shrink to a point.
-    pub fn stretch(self, displacement: &[f64], buffer: &mut ElementBuffer) -> Option<f64> {
-        self.element.stretch(buffer.of(self, displacement, 0).0)
+    pub fn stretch(self, displacement: &[f64], buffer: &mut ForceBuffer) -> Option<f64> {
+        self.element.stretch(buffer.of(self.freedoms, displacement, 0).0)
+    }
+}
+
+/// The entries between any number of nodes.
+fn each_entry_of(nodes: usize, freedoms: &[usize], matrix: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
+    let count = freedoms.len();
+    let of_node = count / nodes;
+    for row in 0..of_node {
+        for column in 0..of_node {
+            let mut entry = |first: usize, second: usize| {
+                let (row, column) = (first * of_node + row, second * of_node + column);
+                add(freedoms[row], freedoms[column], matrix[row * count + column]);
+            };
+            (0..nodes).for_each(|node| entry(node, node));
+            for first in 0..nodes {
+                (0..nodes).filter(|second| *second != first).for_each(|second| entry(first, second));
+            }
+        }
     }
 }
 

@@ -9,12 +9,14 @@
 //! degrees of freedom a node has.
 
 pub mod assembly;
+pub mod element_list;
 pub mod elements;
 pub mod numbering;
 pub mod sparsity;
 
-use assembly::{ElementAt, ElementBuffer};
-use elements::{FiniteElement, Stretching};
+use assembly::{ElementAt, ElementBlock, ForceBuffer, StiffnessBuffer};
+use element_list::ElementList;
+use elements::Stretching;
 use nalgebra::DMatrix;
 use numbering::Numbering;
 use sparsity::Layout;
@@ -40,7 +42,7 @@ pub struct Structure {
     pub unknown_of: Vec<Option<usize>>,
     /// The degree of freedom of each unknown.
     pub freedom_of: Vec<usize>,
-    elements: Vec<Arc<dyn FiniteElement>>,
+    elements: ElementList,
     /// The degrees of freedom of the elements, one element after the other, and the index of the first of each element.
     element_freedoms: Vec<usize>,
     first_freedom: Vec<usize>,
@@ -55,12 +57,7 @@ pub struct Structure {
 impl Structure {
     /// A structure whose nodes have the rotations of their elements. A support fixes a degree of freedom of a node,
     /// given by its index among the node's.
-    pub fn new(
-        dimension: usize,
-        nodes: usize,
-        supports: &[(usize, usize)],
-        elements: Vec<Arc<dyn FiniteElement>>,
-    ) -> Self {
+    pub fn new(dimension: usize, nodes: usize, supports: &[(usize, usize)], elements: ElementList) -> Self {
         Self::like(None, dimension, nodes, supports, elements)
     }
 
@@ -71,10 +68,10 @@ impl Structure {
         dimension: usize,
         nodes: usize,
         supports: &[(usize, usize)],
-        elements: Vec<Arc<dyn FiniteElement>>,
+        elements: ElementList,
     ) -> Self {
         let mut rotations = vec![0; nodes];
-        for element in &elements {
+        for element in elements.iter() {
             for node in element.nodes() {
                 rotations[*node] = element.rotations().max(rotations[*node]);
             }
@@ -92,7 +89,7 @@ impl Structure {
             numbering,
             unknown_of,
             freedom_of,
-            elements: Vec::new(),
+            elements: ElementList::default(),
             element_freedoms: Vec::new(),
             first_freedom: vec![0],
             elements_at: Vec::new(),
@@ -109,14 +106,15 @@ impl Structure {
     }
 
     /// The structure with the same nodes and supports, and with more elements.
-    pub fn with_elements(&self, more: impl IntoIterator<Item = Arc<dyn FiniteElement>>) -> Self {
+    pub fn with_elements(&self, more: &ElementList) -> Self {
         let held = (0..self.freedoms()).filter(|freedom| self.unknown_of[*freedom].is_none());
         let supports: Vec<(usize, usize)> = held.map(|freedom| self.numbering.node_of(freedom)).collect();
-        let elements = self.elements.iter().cloned().chain(more).collect();
+        let mut elements = self.elements.clone();
+        elements.append(more);
         Self::new(self.dimension, self.numbering.nodes(), &supports, elements)
     }
 
-    fn set_elements(&mut self, elements: Vec<Arc<dyn FiniteElement>>) {
+    fn set_elements(&mut self, elements: ElementList) {
         let mut first_at = vec![0; self.numbering.nodes() + 1];
         elements.iter().flat_map(|element| element.nodes()).for_each(|node| first_at[node + 1] += 1);
         (1..first_at.len()).for_each(|node| first_at[node] += first_at[node - 1]);
@@ -148,7 +146,11 @@ impl Structure {
             && self.first_freedom == other.first_freedom
             && self.element_freedoms == other.element_freedoms
             && self.couplings == other.couplings
-            && self.elements.iter().zip(&other.elements).all(|(one, other)| one.nodes().len() == other.nodes().len())
+            && self
+                .elements
+                .iter()
+                .zip(other.elements.iter())
+                .all(|(one, other)| one.nodes().len() == other.nodes().len())
     }
 
     /// The degrees of freedom of a node's translations.
@@ -182,13 +184,17 @@ impl Structure {
 
     /// The elements, each with the degrees of freedom that it joins.
     pub fn elements(&self) -> impl Iterator<Item = ElementAt<'_>> {
-        let freedoms = self.first_freedom.windows(2).map(|range| &self.element_freedoms[range[0]..range[1]]);
-        self.elements.iter().zip(freedoms).map(|(element, freedoms)| ElementAt { element: element.as_ref(), freedoms })
+        (0..self.elements.len()).map(|index| self.element(index))
     }
 
     fn element(&self, index: usize) -> ElementAt<'_> {
-        let freedoms = &self.element_freedoms[self.first_freedom[index]..self.first_freedom[index + 1]];
-        ElementAt { element: self.elements[index].as_ref(), freedoms }
+        let (run, place) = self.elements.place(index);
+        ElementAt::new(run, place, &self.element_freedoms[self.first_freedom[index]..self.first_freedom[index + 1]])
+    }
+
+    /// The elements in blocks of one kind.
+    fn blocks(&self) -> impl Iterator<Item = ElementBlock<'_>> {
+        assembly::blocks(&self.elements, self.dimension, &self.element_freedoms)
     }
 
     /// Whether the forces of all elements are linear in the displacements.
@@ -228,9 +234,9 @@ impl Structure {
     /// Writes `f_int(u)` over all degrees of freedom and returns the largest force that any element carries.
     pub fn internal_force(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
         force.fill(0.0);
-        let mut buffer = ElementBuffer::default();
-        self.elements().fold(0.0, |largest: f64, element| {
-            largest.max(element.each_force(displacement, &mut buffer, |freedom, value| force[freedom] += value))
+        let mut buffer = ForceBuffer::default();
+        self.blocks().fold(0.0, |largest: f64, block| {
+            largest.max(block.each_force(displacement, &mut buffer, |freedom, value| force[freedom] += value))
         })
     }
 
@@ -247,18 +253,18 @@ impl Structure {
     /// whatever the forces elsewhere (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405, doi:10.1007/BF01386090).
     pub fn force_sizes(&self, displacement: &[f64], least: f64, sizes: &mut [f64]) {
         sizes.fill(0.0);
-        let mut buffer = ElementBuffer::default();
-        for element in self.elements() {
-            element.each_force_size(displacement, least, &mut buffer, |freedom, size| sizes[freedom] += size);
+        let mut buffer = ForceBuffer::default();
+        for block in self.blocks() {
+            block.each_force_size(displacement, least, &mut buffer, |freedom, size| sizes[freedom] += size);
         }
     }
 
     /// The largest of the [`force_sizes`](Self::force_sizes) of a node's translations.
     pub fn force_size_at(&self, node: usize, displacement: &[f64], least: f64) -> f64 {
         let first = self.translations_of(node).start;
-        let (mut sizes, mut buffer) = ([0.0; 3], ElementBuffer::default());
+        let (mut sizes, mut buffer) = ([0.0; 3], ForceBuffer::default());
         for element in &self.elements_at[self.first_at[node]..self.first_at[node + 1]] {
-            self.element(*element).each_force_size(displacement, least, &mut buffer, |freedom, size| {
+            self.element(*element).alone().each_force_size(displacement, least, &mut buffer, |freedom, size| {
                 if let Some(sum) = freedom.checked_sub(first).and_then(|component| sizes.get_mut(component)) {
                     *sum += size;
                 }
@@ -270,8 +276,31 @@ impl Structure {
     /// Calls `add(row, column, value)` for every entry of every element's tangent; rows and columns are degrees of
     /// freedom, supported ones included.
     pub fn each_stiffness(&self, displacement: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
-        let mut buffer = ElementBuffer::default();
-        self.elements().for_each(|element| element.each_stiffness(displacement, &mut buffer, add));
+        let mut buffer = StiffnessBuffer::default();
+        self.blocks().for_each(|block| block.each_stiffness(displacement, &mut buffer, add));
+    }
+
+    /// Turns `add(row, column, value)` over unknowns into the same over degrees of freedom. Rows of supports are left
+    /// out; a column of a support goes to the load factor's column, `unknowns()`, times the rate at which the load
+    /// factor moves the support.
+    #[inline(always)]
+    pub fn over_unknowns(
+        &self,
+        support_rate: impl Fn(usize) -> f64,
+        mut add: impl FnMut(usize, usize, f64),
+    ) -> impl FnMut(usize, usize, f64) {
+        move |row, column, value| {
+            let Some(row) = self.unknown_of[row] else { return };
+            match self.unknown_of[column] {
+                Some(column) => add(row, column, value),
+                None => add(row, self.unknowns(), value * support_rate(column)),
+            }
+        }
+    }
+
+    /// Adds `K(u) v` to forces on all degrees of freedom, `v` a motion of all degrees of freedom.
+    pub fn add_stiffness_times(&self, displacement: &[f64], motion: &[f64], forces: &mut [f64]) {
+        self.each_stiffness(displacement, &mut |row, column, value| forces[row] += value * motion[column]);
     }
 
     /// Adds `K(u)` into the leading `unknowns x unknowns` block.
@@ -285,8 +314,8 @@ impl Structure {
 
     /// Calls `add` for every entry of every element's tangent without the summands that [`Self::stretching`] lists.
     pub fn each_stiffness_across(&self, displacement: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
-        let mut buffer = ElementBuffer::default();
-        self.elements().for_each(|element| element.each_stiffness_across(displacement, &mut buffer, add));
+        let mut buffer = StiffnessBuffer::default();
+        self.blocks().for_each(|block| block.each_stiffness_across(displacement, &mut buffer, add));
     }
 
     /// The summands `k c cᵀ` of the tangent by which elements resist stretching, `c` over degrees of freedom.
@@ -296,14 +325,16 @@ impl Structure {
 
     /// The smallest stretch `L/L0` of the elements that may shrink to a point; infinite where there are none.
     pub fn smallest_stretch(&self, displacement: &[f64]) -> f64 {
-        let mut buffer = ElementBuffer::default();
+        let mut buffer = ForceBuffer::default();
         self.elements().filter_map(|element| element.stretch(displacement, &mut buffer)).fold(f64::INFINITY, f64::min)
     }
 
     /// The strain energy `W(u)`.
     pub fn strain_energy(&self, displacement: &[f64]) -> f64 {
-        let mut buffer = ElementBuffer::default();
-        self.elements().map(|element| element.energy(displacement, &mut buffer)).sum()
+        let mut buffer = ForceBuffer::default();
+        let mut sum = 0.0;
+        self.blocks().for_each(|block| block.each_energy(displacement, &mut buffer, |energy| sum += energy));
+        sum
     }
 
     /// The largest change of any element's nodal forces under a displacement rate, over its stiffness times the rate's
@@ -315,11 +346,11 @@ impl Structure {
         if size == 0.0 {
             return 0.0;
         }
-        let (mut buffer, mut largest) = (ElementBuffer::default(), 0.0_f64);
+        let (mut buffer, mut largest) = (StiffnessBuffer::default(), 0.0_f64);
         for at in self.elements() {
             // Row, force and stiffness.
             let mut changes: Vec<(usize, f64, f64)> = Vec::new();
-            at.each_stiffness(displacement, &mut buffer, &mut |row, column, value| match changes
+            at.alone().each_stiffness(displacement, &mut buffer, &mut |row, column, value| match changes
                 .iter_mut()
                 .find(|(freedom, _, _)| *freedom == row)
             {

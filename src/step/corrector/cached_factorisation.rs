@@ -7,7 +7,7 @@
 
 use crate::algebra::SystemFactorisation;
 use crate::algebra::sparse::SparseFactorisation;
-use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::equations::{ModeSystem, factorisation, matrix};
 use crate::mechanics::problem::linearity;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::Rate;
@@ -16,9 +16,9 @@ use std::sync::Arc;
 /// A reusable factorisation of the equations of some modes at a point or near it, with any border, if there is one;
 /// copies have none, so that no memory is held without use.
 #[derive(Default)]
-pub struct AtHand(Option<Arc<SparseFactorisation>>);
+pub struct CachedFactorisation(Option<Arc<SparseFactorisation>>);
 
-impl AtHand {
+impl CachedFactorisation {
     /// Shares a factorisation that may be reused.
     pub(crate) fn shared(serving: Option<&SystemFactorisation>) -> Self {
         match serving {
@@ -47,21 +47,21 @@ impl AtHand {
     pub(crate) fn along(self, system: &ModeSystem<'_>, rate: &Rate) -> Option<SystemFactorisation> {
         let is_its_own = |sparse: &SparseFactorisation| sparse.size() == system.size();
         let bordered = self.0.and_then(Arc::into_inner).filter(is_its_own).and_then(|sparse| {
-            let sparse = sparse.with_last_row(|matrix| system.border(matrix, rate))?;
-            system.is_kept(&sparse).then(|| SystemFactorisation::Sparse(Arc::new(sparse)))
+            let sparse = sparse.with_last_row(|matrix| matrix::border(system, matrix, rate))?;
+            factorisation::is_kept(system, &sparse).then(|| SystemFactorisation::Sparse(Arc::new(sparse)))
         });
-        bordered.or_else(|| system.bordered(&system.iterate(system.anchor.clone()), rate))
+        bordered.or_else(|| factorisation::factorise_bordered(system, &system.iterate(system.anchor.clone()), rate))
     }
 }
 
-impl Clone for AtHand {
+impl Clone for CachedFactorisation {
     fn clone(&self) -> Self {
         Self(None)
     }
 }
 
-impl std::fmt::Debug for AtHand {
+impl std::fmt::Debug for CachedFactorisation {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        out.write_str(if self.0.is_some() { "AtHand(one)" } else { "AtHand(none)" })
+        out.write_str(if self.0.is_some() { "CachedFactorisation(one)" } else { "CachedFactorisation(none)" })
     }
 }

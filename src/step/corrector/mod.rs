@@ -17,3 +17,4 @@ pub(crate) mod newton;
 pub(crate) mod single_iteration;
 pub(crate) mod slip_error;
 pub(crate) mod tangent;
+pub(crate) mod tolerances;

@@ -5,12 +5,16 @@ use crate::algebra::dense::assembly::Sink;
 use crate::mechanics::contact::vector::{self, add, dot};
 use crate::mechanics::equations::closing_equation::ClosingEquation;
 use crate::mechanics::equations::solution::{Corrected, Failure};
-use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role};
-use crate::mechanics::problem::loading::USUAL;
-use crate::mechanics::problem::natural_residual::NO_FORCE;
+use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, factorisation, rate_recovery, residual};
 use crate::mechanics::problem::state::{Rate, State};
+use crate::mechanics::problem::tolerances::{NEGLIGIBLE_FORCE, USUAL_DISPLACEMENT};
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::tangent;
+use crate::step::corrector::tolerances::{
+    ACCEPTED_RESIDUAL, ATTAINABLE_RESIDUAL, FIRST_CORRECTION_RATIO, LARGEST_RELATIVE_CORRECTION, NEGLIGIBLE_CORRECTION,
+    POSITION_ROUND_OFF, REUSABLE_PIVOT_RATIO, REUSE_CONTRACTION, RISING_CORRECTION_RATIO, ROUND_OFF_CORRECTION_RATIO,
+    ROUND_OFF_MULTIPLE, SMALL_ERROR, WEAK_ROW_FORCE,
+};
 use nalgebra::DVector;
 
 /// Largest number of Newton iterations.
@@ -18,39 +22,6 @@ const MOST_ITERATIONS: u64 = 16;
 /// Number of iterations with a fresh factorisation and without a decrease of the correction at which the method gives
 /// up: a convergent iteration has at most one, at its beginning.
 const MOST_RISES: u64 = 2;
-/// Ratio of successive corrections above which the correction has not decreased. At a singular point the ratio is 1/2.
-const RISES: f64 = 0.7;
-/// Largest ratio of the second correction to the first in a step that may be shortened, where a factorisation is most
-/// of the work: from farther away Newton's method need not converge (P. Deuflhard, Newton Methods for Nonlinear
-/// Problems, Springer 2011, section 5.1).
-const BEGINS_WELL: f64 = 0.25;
-/// Relative residual that an accepted point must have.
-pub const ACCEPTED_RESIDUAL: f64 = 1e-11;
-
-/// Relative residual below which further iterations gain nothing.
-const ROUND_OFF: f64 = 1e-15;
-/// Predicted arc length (dimensionless) of the next correction below which it is not computed where the residual is
-/// round-off.
-const NO_CORRECTION: f64 = 4e-15;
-/// Error below which Newton's method has practically converged.
-const SMALL: f64 = 1e-6;
-/// Smallest ratio of the smallest to the largest pivot of a factorisation that may be reused: below it the residual
-/// says little about the error of the state. A large structure is soft compared with its elements, and the ratio falls
-/// with its size: it is 8e-5 in a lattice of 102,304 unknowns that touches with friction.
-pub(crate) const REGULAR: f64 = 3e-5;
-/// Largest last correction, over the pivot ratio, with which a factorisation below [`REGULAR`] may be reused: so small
-/// a correction changes the smallest pivot by at most this fraction.
-const STILL_FALLS: f64 = 1e-2;
-/// Largest ratio of successive errors for which a factorisation from elsewhere is reused.
-const SERVES_ON: f64 = 0.1;
-/// Multiple of the bound on rounding within which a residual counts as round-off.
-const ROOM: f64 = 8.0;
-/// Errors of gaps and arc lengths (dimensionless) up to this may be round-off.
-const AT_PLACE: f64 = 1e-13;
-/// Rows with forces below this fraction of the force scale are judged relative to their own forces.
-const WEAK: f64 = 1e-3;
-/// Ratio of successive corrections above which they are round-off themselves.
-const NO_FALL: f64 = 0.25;
 
 /// Solves the equations by Newton's method from a guess, to round-off.
 ///
@@ -170,11 +141,12 @@ impl FactorisationInUse {
     fn decide_reuse(&mut self, error: f64, progress: &ErrorProgress, correction: f64, row_by_row: bool) -> bool {
         let is_regular = self.latest.as_ref().is_some_and(|latest| {
             let pivot_ratio = latest.pivot_ratio();
-            pivot_ratio >= REGULAR || correction <= STILL_FALLS * pivot_ratio
+            pivot_ratio >= REUSABLE_PIVOT_RATIO || correction <= LARGEST_RELATIVE_CORRECTION * pivot_ratio
         });
         // A factorisation left over from elsewhere has to converge faster than a fresh one would.
-        let falls = self.had_own || self.made > 0 || progress.best_before.is_none_or(|least| error < SERVES_ON * least);
-        let serves = !self.is_own && error <= SMALL && progress.improved && falls && !row_by_row && is_regular;
+        let falls =
+            self.had_own || self.made > 0 || progress.best_before.is_none_or(|least| error < REUSE_CONTRACTION * least);
+        let serves = !self.is_own && error <= SMALL_ERROR && progress.improved && falls && !row_by_row && is_regular;
         std::mem::replace(&mut self.reused, serves)
     }
 }
@@ -188,7 +160,7 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
         factorisation: FactorisationInUse,
     ) -> Self {
         let mut iterate = guess;
-        system.make_consistent(&mut iterate);
+        residual::make_consistent(system, &mut iterate);
         Self {
             system,
             closing,
@@ -196,7 +168,7 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
             iterate,
             values: DVector::zeros(system.size),
             force: vec![0.0; system.loading.structure.freedoms()],
-            change: system.no_rate(),
+            change: rate_recovery::no_rate(system),
             iterations: 0,
             iterations_to_small: None,
             small_by_correction: None,
@@ -233,8 +205,8 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
     /// Evaluates the residuals and the error of the iterate.
     fn evaluate(&mut self) -> Result<IterateError, Failure> {
         let Self { system, iterate, values, force, .. } = self;
-        let (largest, forces) = system.residual(iterate, values, force);
-        let scale = forces.max(self.force_scale).max(NO_FORCE);
+        let (largest, forces) = residual::write_residual(system, iterate, values, force);
+        let scale = forces.max(self.force_scale).max(NEGLIGIBLE_FORCE);
         let residual = largest / scale;
         let last = system.size - 1;
         values[last] = self.closing.value(system, &iterate.state);
@@ -246,7 +218,7 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
         if !error.is_finite() {
             return Err(Failure::NotConverged);
         }
-        if error <= SMALL {
+        if error <= SMALL_ERROR {
             self.iterations_to_small.get_or_insert(self.iterations);
         }
         Ok(IterateError { residual, forces, scale, geometric, error })
@@ -287,8 +259,8 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
     fn has_settled(&mut self, at: &IterateError, progress: &ErrorProgress, was_reused: bool) -> bool {
         let ErrorProgress { least, improved, .. } = *progress;
         let rounding = !improved && self.is_left_by_rounding(at);
-        let stalled = !improved && (!was_reused || least <= ROUND_OFF || rounding);
-        let settled = (least <= ROUND_OFF && (!was_reused || self.nothing_left))
+        let stalled = !improved && (!was_reused || least <= ATTAINABLE_RESIDUAL || rounding);
+        let settled = (least <= ATTAINABLE_RESIDUAL && (!was_reused || self.nothing_left))
             || at.error == 0.0
             || (stalled && (self.row_by_row || least <= ACCEPTED_RESIDUAL || rounding));
         if !settled || self.iterations == 0 {
@@ -307,7 +279,8 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
     /// factorisation would have passed the tolerance at once.
     fn is_left_by_rounding(&self, at: &IterateError) -> bool {
         let is_large = self.system.loading.structure.layout().is_some();
-        let at_place = || at.geometric <= AT_PLACE.max(ROOM * f64::EPSILON * reach(&self.iterate.state));
+        let at_place =
+            || at.geometric <= POSITION_ROUND_OFF.max(ROUND_OFF_MULTIPLE * f64::EPSILON * reach(&self.iterate.state));
         is_large
             && at_place()
             && left_by_rounding(self.system, &self.iterate.state, &self.values, at.scale) == Some(0.0)
@@ -317,7 +290,7 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
     /// elements next to large displacements. The iterate whose correction no longer decreases is the point.
     fn ends_at_rounding(&mut self, at: &IterateError, progress: &ErrorProgress) -> bool {
         let ended = self.iterations == MOST_ITERATIONS;
-        let falls_no_more = ended || self.correction >= NO_FALL * self.previous_correction;
+        let falls_no_more = ended || self.correction >= ROUND_OFF_CORRECTION_RATIO * self.previous_correction;
         if progress.least <= ACCEPTED_RESIDUAL || self.iterations == 0 || !falls_no_more {
             return false;
         }
@@ -333,10 +306,10 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
     /// digits of a small correction count.
     fn factorise_or_reuse(&mut self, error: f64, work: &mut Work) -> bool {
         let Self { system, closing, iterate, factorisation, .. } = self;
-        let once = factorisation.reused || (factorisation.is_own && error <= SMALL);
+        let once = factorisation.reused || (factorisation.is_own && error <= SMALL_ERROR);
         if !factorisation.reused && !std::mem::take(&mut factorisation.is_own) {
             let put_closing = |matrix: &mut dyn Sink| closing.write_gradient(system, &iterate.state, matrix);
-            factorisation.latest = system.factorise(iterate, Kind::Increment, put_closing);
+            factorisation.latest = factorisation::factorise(system, iterate, Kind::Increment, put_closing);
             factorisation.made += 1;
             work.factorisations += 1;
             factorisation.along = None;
@@ -369,27 +342,27 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
         let (before, correction, reused) = (self.previous_correction, self.correction, self.factorisation.reused);
         let begins =
             self.iterations == 1 && self.system.may_be_shorter && self.system.loading.structure.layout().is_some();
-        if begins && !reused && correction > SMALL && correction > BEGINS_WELL * before {
+        if begins && !reused && correction > SMALL_ERROR && correction > FIRST_CORRECTION_RATIO * before {
             return Err(Failure::NotConverged);
         }
-        if !reused && correction > SMALL && before.is_finite() && correction > RISES * before {
+        if !reused && correction > SMALL_ERROR && before.is_finite() && correction > RISING_CORRECTION_RATIO * before {
             self.rises += 1;
             if self.rises == MOST_RISES {
                 return Err(Failure::NotConverged);
             }
         }
-        if correction <= SMALL {
+        if correction <= SMALL_ERROR {
             self.small_by_correction.get_or_insert(self.iterations);
         }
-        let contraction = if before.is_finite() { correction / before } else { SERVES_ON };
-        self.nothing_left = contraction <= SERVES_ON
-            && (contraction * correction <= NO_CORRECTION
+        let contraction = if before.is_finite() { correction / before } else { REUSE_CONTRACTION };
+        self.nothing_left = contraction <= REUSE_CONTRACTION
+            && (contraction * correction <= NEGLIGIBLE_CORRECTION
                 || is_rounding(self.system, &self.iterate.state, &self.values, contraction));
         Ok(())
     }
 
     fn update(&mut self, work: &mut Work) {
-        self.system.correct_by(&mut self.iterate, &self.values, &mut self.change);
+        rate_recovery::correct_by(self.system, &mut self.iterate, &self.values, &mut self.change);
         self.iterations += 1;
         work.newton_iterations += 1;
     }
@@ -405,7 +378,7 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
         system.share(&mut best.iterate.state);
         *serving = self.factorisation.latest.and_then(|latest| tangent::may_serve(system, latest));
         Ok(Corrected {
-            modes: system.modes_at(&best.iterate),
+            modes: rate_recovery::modes_at(system, &best.iterate),
             state: best.iterate.state,
             directions: best.iterate.directions,
             iterations_to_small: iterations_to_small.unwrap_or(best.iterations).min(best.iterations),
@@ -433,11 +406,11 @@ fn bring_to_zero(
         return true;
     }
     let slope = |values: &DVector<f64>| {
-        let rate = system.rate_at(iterate, values, Kind::Increment);
+        let rate = rate_recovery::rate_at(system, iterate, values, Kind::Increment);
         closing.slope_beside_row(system, &iterate.state, &rate)
     };
     if along.is_none() {
-        let mut values = system.bordering();
+        let mut values = rate_recovery::bordering(system);
         if !factorisation.solve_once(&mut values) {
             return false;
         }
@@ -458,7 +431,7 @@ fn residual_of_rows(
     sizes: &mut [f64],
 ) -> f64 {
     let structure = system.loading.structure;
-    structure.force_sizes(&state.displacement, USUAL, sizes);
+    structure.force_sizes(&state.displacement, USUAL_DISPLACEMENT, sizes);
     for (freedom, size) in sizes.iter_mut().enumerate() {
         *size +=
             (state.load * system.loading.pattern.forces[freedom]).abs() + system.loading.held.forces[freedom].abs();
@@ -470,7 +443,7 @@ fn residual_of_rows(
     }
     let rows =
         structure.freedom_of.iter().zip(values.as_slice()).map(|(freedom, value)| (sizes[*freedom], value.abs()));
-    rows.filter(|(size, _)| *size < WEAK * scale)
+    rows.filter(|(size, _)| *size < WEAK_ROW_FORCE * scale)
         .map(|(size, value)| value / size.max(f64::EPSILON * scale))
         .fold(0.0, f64::max)
 }
@@ -489,11 +462,11 @@ fn left_by_rounding(system: &ModeSystem<'_>, state: &State, values: &DVector<f64
     let rounding = structure.rounding(&state.displacement);
     let mut residual = 0.0_f64;
     for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
-        residual = residual.max((values[unknown].abs() - ROOM * rounding[*freedom]) / scale);
+        residual = residual.max((values[unknown].abs() - ROUND_OFF_MULTIPLE * rounding[*freedom]) / scale);
     }
     let reach = reach(state);
     let geometric = largest_below_equilibrium(system, values);
-    let within = geometric <= ACCEPTED_RESIDUAL + ROOM * f64::EPSILON * reach;
+    let within = geometric <= ACCEPTED_RESIDUAL + ROUND_OFF_MULTIPLE * f64::EPSILON * reach;
     (residual <= ACCEPTED_RESIDUAL && within).then_some(residual)
 }
 
@@ -519,17 +492,17 @@ pub(crate) fn judged_as_state(
     without: &[usize],
     force_scale: f64,
 ) -> Corrected {
-    system.make_consistent(&mut iterate);
+    residual::make_consistent(system, &mut iterate);
     let mut left_over = DVector::zeros(system.size);
     let mut force = vec![0.0; system.loading.structure.freedoms()];
-    let (largest, forces) = system.residual(&iterate, &mut left_over, &mut force);
+    let (largest, forces) = residual::write_residual(system, &iterate, &mut left_over, &mut force);
     let geometric = (system.loading.structure.unknowns()..left_over.len())
         .filter(|row| !without.contains(row))
         .fold(0.0_f64, |largest, row| largest.max(left_over[row].abs()));
-    let residual = (largest / forces.max(force_scale).max(NO_FORCE)).max(geometric);
+    let residual = (largest / forces.max(force_scale).max(NEGLIGIBLE_FORCE)).max(geometric);
     system.share(&mut iterate.state);
     Corrected {
-        modes: system.modes_at(&iterate),
+        modes: rate_recovery::modes_at(system, &iterate),
         state: iterate.state,
         directions: iterate.directions,
         iterations_to_small: 0,

@@ -4,7 +4,7 @@
 use crate::algebra::SystemFactorisation;
 use crate::algebra::dense::assembly::Sink;
 use crate::mechanics::equations::closing_equation::ClosingEquation;
-use crate::mechanics::equations::{Kind, ModeSystem};
+use crate::mechanics::equations::{Kind, ModeSystem, factorisation, rate_recovery, residual};
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cost_counters::Work;
 use nalgebra::DVector;
@@ -18,20 +18,20 @@ pub(crate) fn iterated_once(
     work: &mut Work,
 ) -> Option<(State, SystemFactorisation)> {
     let mut iterate = system.iterate(guess);
-    system.make_consistent(&mut iterate);
+    residual::make_consistent(system, &mut iterate);
     let mut values = DVector::zeros(system.size());
     let mut force = vec![0.0; system.loading.structure.freedoms()];
-    system.residual(&iterate, &mut values, &mut force);
+    residual::write_residual(system, &iterate, &mut values, &mut force);
     let last = system.size() - 1;
     values[last] = closing.value(system, &iterate.state);
     let put_closing = |matrix: &mut dyn Sink| closing.write_gradient(system, &iterate.state, matrix);
     work.factorisations += 1;
     work.newton_iterations += 1;
-    let factorisation = system.factorise(&iterate, Kind::Increment, put_closing)?;
+    let factorisation = factorisation::factorise(system, &iterate, Kind::Increment, put_closing)?;
     if !factorisation.solve_once(&mut values) || !values.iter().all(|value| value.is_finite()) {
         return None;
     }
-    Some((system.corrected_by(iterate, &values).state, factorisation))
+    Some((rate_recovery::corrected_by(system, iterate, &values).state, factorisation))
 }
 
 /// The approximate direction of the path, from a factorisation of the equations nearby, on the side of `towards`.
@@ -41,11 +41,11 @@ pub(crate) fn direction_about(
     factorisation: &SystemFactorisation,
     towards: &Rate,
 ) -> Option<Rate> {
-    let mut values = system.bordering();
+    let mut values = rate_recovery::bordering(system);
     if !factorisation.solve_once(&mut values) {
         return None;
     }
-    let mut rate = system.direction_from(&system.iterate(state.clone()), &values)?;
+    let mut rate = rate_recovery::direction_from(system, &system.iterate(state.clone()), &values)?;
     if rate.product(towards) < 0.0 {
         rate.scale(-1.0);
     }

@@ -14,7 +14,7 @@ use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, size};
 use crate::mechanics::equations::slip_integration::{self, Rule};
 use crate::mechanics::equations::solution::Corrected;
-use crate::mechanics::equations::{Kind, ModeSystem, Role, Track};
+use crate::mechanics::equations::{Kind, ModeSystem, Role, Track, factorisation, matrix, rate_recovery};
 use crate::mechanics::problem::state::{Rate, State};
 use nalgebra::DVector;
 
@@ -63,12 +63,13 @@ pub fn drift(
             }
         }
     }
-    let factorisation =
-        system.factorise_as_it_is(&iterate, Kind::Increment, |matrix| system.border(matrix, end.rate))?;
+    let factorisation = factorisation::factorise_as_it_is(system, &iterate, Kind::Increment, |matrix| {
+        matrix::border(system, matrix, end.rate)
+    })?;
     if !factorisation.solve(&mut values) {
         return None;
     }
-    Some(system.rate_at(&iterate, &values, Kind::Increment))
+    Some(rate_recovery::rate_at(system, &iterate, &values, Kind::Increment))
 }
 
 /// The defect `τ` of the rule.

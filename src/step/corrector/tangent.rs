@@ -4,10 +4,9 @@ use crate::algebra::SystemFactorisation;
 use crate::algebra::sparse::SparseFactorisation;
 use crate::algebra::sparse::preconditioned_refinement::Nearby;
 use crate::mechanics::equations::solution::{Corrected, Tangent};
-use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role};
+use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, factorisation, matrix, rate_recovery};
 use crate::mechanics::problem::state::Rate;
-use crate::step::corrector::determinant_sign::UNCERTAIN;
-use crate::step::corrector::newton::REGULAR;
+use crate::step::corrector::tolerances::{REUSABLE_PIVOT_RATIO, UNCERTAIN_PIVOT_RATIO};
 
 /// The path's direction at a converged point, and an estimate of the point's error: the size of one more Newton
 /// correction across the path.
@@ -30,18 +29,18 @@ pub fn tangent_and_error(
         return Some(Tangent { rate, error, determinant, stiffness_across });
     }
     *factorisations += 1;
-    let factorisation = system.bordered(&iterate, towards)?;
+    let factorisation = factorisation::factorise_bordered(system, &iterate, towards)?;
     let mut values = corrected.left_over.clone();
     values[system.size - 1] = 0.0;
     if !factorisation.solve(&mut values) {
         return None;
     }
-    let error = system.length_of(&values);
-    system.border_into(&mut values);
+    let error = rate_recovery::length_of(system, &values);
+    rate_recovery::border_into(system, &mut values);
     if !factorisation.solve(&mut values) {
         return None;
     }
-    let rate = system.direction_from(&iterate, &values)?;
+    let rate = rate_recovery::direction_from(system, &iterate, &values)?;
     let mut stiffness_across = Vec::new();
     if system.has_tracks() {
         let across = |(contact, role): (usize, &Role)| {
@@ -52,7 +51,7 @@ pub fn tangent_and_error(
         };
         stiffness_across = system.roles.iter().enumerate().map(across).collect();
     }
-    let certain = factorisation.pivot_ratio() > UNCERTAIN;
+    let certain = factorisation.pivot_ratio() > UNCERTAIN_PIVOT_RATIO;
     let determinant = certain.then(|| factorisation.determinant_sign());
     *serving = may_serve(system, factorisation);
     Some(Tangent { rate, error, determinant, stiffness_across })
@@ -63,7 +62,7 @@ pub(crate) fn error_by(system: &ModeSystem<'_>, nearby: &SparseFactorisation, co
     let mut values = corrected.left_over.clone();
     values[system.size - 1] = 0.0;
     let solved = nearby.solve_once(&mut values);
-    solved.then(|| system.length_of(&values))
+    solved.then(|| rate_recovery::length_of(system, &values))
 }
 
 /// The factorisation, where it may be reused nearby: not with slips in planes, whose directions have equations of their
@@ -80,11 +79,11 @@ fn tangent_nearby(
     iterate: &Iterate,
     towards: &Rate,
 ) -> Option<Rate> {
-    if nearby.pivot_ratio() < REGULAR {
+    if nearby.pivot_ratio() < REUSABLE_PIVOT_RATIO {
         return None;
     }
-    let nearby = Nearby::new(nearby, system.assemble_sparse(iterate, Kind::Rates)?)?;
-    let values = nearby.solve(&system.bordering())?;
+    let nearby = Nearby::new(nearby, matrix::assemble_sparse(system, iterate, Kind::Rates)?)?;
+    let values = nearby.solve(&rate_recovery::bordering(system))?;
     // The direction is on the same side of both borders, so that the determinants have the same sign.
-    system.direction_from(iterate, &values).filter(|rate| rate.product(towards) > 0.0)
+    rate_recovery::direction_from(system, iterate, &values).filter(|rate| rate.product(towards) > 0.0)
 }

@@ -33,16 +33,11 @@ use crate::mechanics::contact::vector::{Vector, add, dot};
 use crate::mechanics::contact::{Frame, Mode};
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::increment_mpec::solution_extraction;
-use crate::step::increment_mpec::{ForeseenModes, InReach, IncrementProgram, LOOSEST, Named, tangent_components};
+use crate::step::increment_mpec::tolerances::{
+    LOOSEST_TOLERANCE, MEMBER_TOLERANCE, RATE_ROUND_OFF, SMALLEST_CHORD_COSINE, VIOLATION_MULTIPLE,
+};
+use crate::step::increment_mpec::{ForeseenModes, InReach, IncrementProgram, Named, tangent_components};
 use nalgebra::DVector;
-
-/// Smallest member that is positive by its value, and its smallest ratio to the constraint violation at the point.
-const CLEAR: f64 = 1e-9;
-const LEEWAY: f64 = 10.0;
-/// Rounding of rates: of velocities, and of forces relative to the largest.
-const ROUNDING_OF_RATES: f64 = 1e-12;
-/// Least cosine between the chord of the increment and the direction at its end.
-const FORWARD: f64 = 0.5;
 
 /// A point of the path with its direction.
 #[derive(Clone, Copy)]
@@ -165,11 +160,11 @@ fn clear_activities(
     let members = members(program, x, end, frames);
     let rounding = program.rounding(x);
     let left = equality.iter().copied().fold(0.0, larger);
-    let clear = CLEAR.max(LEEWAY * left.max(rounding).max(end.error / program.step));
+    let clear = MEMBER_TOLERANCE.max(VIOLATION_MULTIPLE * left.max(rounding).max(end.error / program.step));
     let smaller = members.iter().map(|[first, second]| first.end.min(second.part()));
-    let feasible = Settings::warm().tolerance.max(rounding).min(LOOSEST);
+    let feasible = Settings::warm().tolerance.max(rounding).min(LOOSEST_TOLERANCE);
     let is_feasible = smaller.fold(left, larger) <= feasible;
-    let is_near = end.error <= LOOSEST * program.step;
+    let is_near = end.error <= LOOSEST_TOLERANCE * program.step;
     if !is_feasible || !is_near {
         // Where no force opposes a slip, the slip may have either sense.
         let is_broken = |[first, second]: &[PairMember; 2]| {
@@ -215,7 +210,7 @@ fn members(
         start,
         end,
         rates,
-        rounding: ROUNDING_OF_RATES * rounding,
+        rounding: RATE_ROUND_OFF * rounding,
         is_slip,
     };
     let mut members = Vec::with_capacity(program.pairs());
@@ -261,7 +256,7 @@ fn is_strict_solution(program: &mut IncrementProgram<'_>, x: &DVector<f64>, end:
         along_forward += x[unknown] * program.forward.displacement[*freedom];
         along_end += x[unknown] * end.rate.displacement[*freedom];
     }
-    if along_end.is_nan() || along_end < FORWARD {
+    if along_end.is_nan() || along_end < SMALLEST_CHORD_COSINE {
         return false;
     }
     let linear = |rate: &Rate| program.dissipation_along(rate) + program.forward_weight * program.forward.product(rate);

@@ -4,6 +4,7 @@ use crate::complementarity::mpec::{Problem, SparseRows};
 use crate::mechanics::contact::Frame;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
 use crate::mechanics::problem::contact_motion;
+use crate::mechanics::problem::equilibrium;
 use crate::mechanics::problem::state::State;
 use crate::step::increment_mpec::{InReach, IncrementProgram, tangent_components};
 use nalgebra::{DMatrix, DVector};
@@ -110,10 +111,9 @@ impl Problem for IncrementProgram<'_> {
         let structure = self.loading.structure;
         let state = self.state(x);
         let mut force = vec![0.0; structure.freedoms()];
-        structure.internal_force(&state.displacement, &mut force);
+        equilibrium::write_unbalanced(self.loading, &state, &mut force);
         for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
-            let load = state.load * self.loading.pattern.forces[*freedom] + self.loading.held.forces[*freedom];
-            values[unknown] = (force[*freedom] - load) / self.force;
+            values[unknown] = force[*freedom] / self.force;
         }
         let mut row = structure.unknowns();
         for entry in &self.reach {
@@ -138,13 +138,11 @@ impl Problem for IncrementProgram<'_> {
         let state = self.state(x);
         let unknowns = structure.unknowns();
         let scale = self.step / self.force;
-        structure.each_stiffness(&state.displacement, &mut |row, column, value| {
-            let Some(row) = structure.unknown_of[row] else { return };
-            match structure.unknown_of[column] {
-                Some(column) => jacobian[(row, column)] += scale * value,
-                None => jacobian[(row, unknowns)] += scale * value * self.loading.support_rate(column),
-            }
-        });
+        let support_rate = |freedom: usize| self.loading.support_rate(freedom);
+        {
+            let mut add = structure.over_unknowns(support_rate, |row, column, value| jacobian[(row, column)] += value);
+            structure.each_stiffness(&state.displacement, &mut |row, column, value| add(row, column, scale * value));
+        }
         for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
             let force = self.loading.pattern.forces[*freedom];
             if force != 0.0 {

@@ -37,6 +37,7 @@ mod tests_in_space;
 mod tests_of_certificate;
 #[cfg(test)]
 mod tests_of_chains;
+pub(crate) mod tolerances;
 
 use crate::complementarity::mpec::{self, Finish, PairActivity, ProgramSolution, Settings, StationarityKind};
 use crate::mechanics::contact::coulomb::CoulombFriction;
@@ -46,22 +47,15 @@ use crate::mechanics::equations::slip_integration::Start;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::cancel::CancelFlag;
+use crate::step::increment_mpec::tolerances::{
+    FORWARD_WEIGHT_SHARE, LOOSEST_TOLERANCE, REACH_IN_LENGTHS, ROUND_OFF_MULTIPLE, SMALLEST_DISSIPATION,
+};
 pub use certificate::Arrived;
 use nalgebra::DVector;
 pub use search::{ProgramEnd, Searched};
 use smallvec::SmallVec;
 use tangent_components::Components;
 
-/// Contacts whose gap is beyond this many arc lengths cannot close in the increment and are left out.
-const REACH: f64 = 3.0;
-/// Ratio of the weight of the forward term to the dissipation.
-const FORWARD_SHARE: f64 = 0.1;
-/// Dissipation per arc length below which it is round-off of a sticking motion.
-const LEAST_DISSIPATION: f64 = 1e-12;
-/// Multiple of the bound on rounding within which the residual of equilibrium counts as round-off, and the largest
-/// tolerance with which modes are determined.
-const ROOM: f64 = 8.0;
-const LOOSEST: f64 = 1e-3;
 /// Largest number of solves with `γ1` adapted.
 const MOST_ADAPTATIONS: usize = 6;
 
@@ -192,7 +186,7 @@ impl<'a> IncrementProgram<'a> {
         let mut reach = Vec::new();
         for (contact, data) in loading.contacts.iter().enumerate() {
             let frame = loading.frame(contact, base);
-            if frame.gap > REACH * step {
+            if frame.gap > REACH_IN_LENGTHS * step {
                 continue;
             }
             let tangents = data.tangents();
@@ -211,8 +205,8 @@ impl<'a> IncrementProgram<'a> {
         let mut program =
             Self { loading, base, step, forward, force, arc_weight, forward_weight, reach, variables, most_motion };
         let dissipation = program.dissipation_along(forward);
-        if dissipation > LEAST_DISSIPATION {
-            program.forward_weight = FORWARD_SHARE * dissipation;
+        if dissipation > SMALLEST_DISSIPATION {
+            program.forward_weight = FORWARD_WEIGHT_SHARE * dissipation;
         }
         program.arc_weight = dissipation + program.forward_weight;
         if program.reach.iter().any(|entry| entry.tangents == 2) && program.arc_weight > 0.0 {
@@ -350,7 +344,7 @@ impl<'a> IncrementProgram<'a> {
             enumeration_limit: 3,
             // The arc length bounds every increment.
             looks_beyond: false,
-            tolerance: warm.tolerance.max(self.rounding(start)).min(LOOSEST),
+            tolerance: warm.tolerance.max(self.rounding(start)).min(LOOSEST_TOLERANCE),
             ..warm
         };
         let mut counts = ProgramCounts::default();
@@ -415,7 +409,7 @@ impl<'a> IncrementProgram<'a> {
     /// better.
     fn rounding(&self, x: &DVector<f64>) -> f64 {
         let rounding = self.loading.structure.rounding(&self.state(x).displacement);
-        ROOM * rounding.into_iter().fold(0.0, f64::max) / self.force
+        ROUND_OFF_MULTIPLE * rounding.into_iter().fold(0.0, f64::max) / self.force
     }
 
     /// The motion of a contact since the start over the step, along the tangents there; for a single node from the

@@ -7,15 +7,12 @@ use crate::mechanics::contact::Mode;
 use crate::mechanics::problem::state::State;
 use crate::resources::cancel::CancelFlag;
 use crate::step::increment_mpec::solution_extraction;
-use crate::step::increment_mpec::{InReach, IncrementProgram, LOOSEST, ProgramCounts};
+use crate::step::increment_mpec::tolerances::{
+    FIRST_RELAXATION, LARGEST_MOTION, LAST_RELAXATION, LOOSEST_TOLERANCE, RELAXATION_FACTOR,
+};
+use crate::step::increment_mpec::{InReach, IncrementProgram, ProgramCounts};
 use nalgebra::DVector;
 
-/// The largest first bound on the products, the ratio of successive bounds, and the last bound.
-const FIRST: f64 = 1e-2;
-const FACTOR: f64 = 1e-2;
-const LAST: f64 = 1e-8;
-/// Largest change of each displacement and of the load in an increment, over the prescribed arc length.
-const MOST_MOTION: f64 = 2.0;
 /// Largest number of iterations of one sequence.
 const MOST_ITERATIONS: usize = 40;
 /// Largest number of biactive pairs whose branches are enumerated.
@@ -58,7 +55,7 @@ pub struct ContactAt {
 /// Bounds the motion: searches do not go to distant solutions, whose arc length cannot be adapted to the prescribed
 /// one.
 pub fn stay_near(program: &mut IncrementProgram<'_>) {
-    program.most_motion = MOST_MOTION;
+    program.most_motion = LARGEST_MOTION;
 }
 
 /// The contacts in reach, and the state, at variables of the program.
@@ -93,7 +90,7 @@ pub fn arc_length_ratio(program: &IncrementProgram<'_>, variables: &DVector<f64>
 pub fn first_relaxation(program: &IncrementProgram<'_>) -> f64 {
     let tractions = program.reach.iter().flat_map(|entry| &entry.traction[..entry.tangents]);
     let largest = tractions.fold(0.0_f64, |largest, traction| largest.max(traction.abs()));
-    (FIRST * (program.arc_weight / largest).min(1.0)).max(LAST)
+    (FIRST_RELAXATION * (program.arc_weight / largest).min(1.0)).max(LAST_RELAXATION)
 }
 
 /// Solves from a start with the present `γ1` and `γ2`; `present` decides where a pair is biactive.
@@ -108,9 +105,9 @@ pub fn search_from(
     let default = Settings::default();
     let settings = Settings {
         first_relaxation,
-        relaxation_factor: FACTOR,
-        last_relaxation: LAST,
-        tolerance: default.tolerance.max(program.rounding(start)).min(LOOSEST),
+        relaxation_factor: RELAXATION_FACTOR,
+        last_relaxation: LAST_RELAXATION,
+        tolerance: default.tolerance.max(program.rounding(start)).min(LOOSEST_TOLERANCE),
         iteration_limit: MOST_ITERATIONS,
         finish: Finish::PatternSettled,
         restarts: 0,
@@ -140,7 +137,7 @@ pub fn search_from(
 
 /// The next smaller first bound; `None` past the last.
 pub fn tighter(relaxation: f64) -> Option<f64> {
-    (relaxation > LAST).then(|| (FACTOR * relaxation).max(LAST))
+    (relaxation > LAST_RELAXATION).then(|| (RELAXATION_FACTOR * relaxation).max(LAST_RELAXATION))
 }
 
 /// Adapts `γ1` to a solution whose arc length is not the prescribed one: along a straight direction the arc length is

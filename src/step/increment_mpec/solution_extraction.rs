@@ -5,15 +5,9 @@ use crate::complementarity::mpec::{Activities, ConeActivity, PairActivity, Probl
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::problem::state::State;
 use crate::resources::cancel::CancelFlag;
+use crate::step::increment_mpec::tolerances::{MEMBER_TOLERANCE, SMALLEST_DIRECTED_SIZE, SMALLEST_MOTION_COSINE};
 use crate::step::increment_mpec::{InReach, IncrementProgram, Named, tangent_components};
 use nalgebra::DVector;
-
-/// Tangential force or slip, relative to the scales, below which its direction is undefined.
-const NO_DIRECTION: f64 = 1e-9;
-/// Largest member of a pair that counts as zero at an exact end.
-const SAME: f64 = 1e-9;
-/// Least cosine between the motion that the program found and the exact one.
-const SAME_WAY: f64 = 0.9;
 
 /// The result of a solution of the program. Where there are circular cones, the solution is first made exact, so that
 /// the directions of slip are those at the end of the increment.
@@ -24,7 +18,7 @@ pub(super) fn named_modes(
     cancel: &CancelFlag,
 ) -> Named {
     if let Some(exact) = exact_end(program, &solution.x, cancel)
-        && let Ok(activities) = Activities::at(program, &exact, SAME)
+        && let Ok(activities) = Activities::at(program, &exact, MEMBER_TOLERANCE)
     {
         return Named {
             modes: modes_at(program, &exact, &activities, present),
@@ -49,7 +43,7 @@ fn exact_end(program: &IncrementProgram<'_>, x: &DVector<f64>, cancel: &CancelFl
     let moved = program.loading.structure.unknowns() + 1;
     let (before, after) = (x.rows(0, moved), polished.x.rows(0, moved));
     // A solution other than that of the program is rejected.
-    (before.dot(&after) >= SAME_WAY * before.norm() * after.norm()).then_some(polished.x)
+    (before.dot(&after) >= SMALLEST_MOTION_COSINE * before.norm() * after.norm()).then_some(polished.x)
 }
 
 /// The contact modes at variables of the program; `present` decides where a pair is biactive.
@@ -126,9 +120,9 @@ pub(super) fn polish(program: &IncrementProgram<'_>, x: &DVector<f64>, cancel: &
 fn closed_in_space(entry: &InReach, x: &DVector<f64>, activity: ConeActivity, present: Mode) -> Mode {
     let (force, slip) = entry.cone_members(x);
     let size = |v: &[f64; 3]| v[1].hypot(v[2]);
-    let sliding = if size(&force) > NO_DIRECTION {
+    let sliding = if size(&force) > SMALLEST_DIRECTED_SIZE {
         tangent_components::slip(&entry.frame.tangents, [-force[1], -force[2]])
-    } else if size(&slip) > NO_DIRECTION {
+    } else if size(&slip) > SMALLEST_DIRECTED_SIZE {
         tangent_components::slip(&entry.frame.tangents, [slip[1], slip[2]])
     } else {
         present

@@ -8,14 +8,12 @@ use crate::mechanics::contact::{ContactPair, Reaction, Sliding, tangents_in_spac
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::state::dot;
 use crate::mechanics::structure::Structure;
-use crate::mechanics::structure::elements::FiniteElement;
 use crate::mechanics::structure::elements::bar::Bar;
 use crate::mechanics::structure::elements::spring::Spring;
 use crate::model::request::Strain;
 use crate::step::increment_mpec::solution_extraction;
 use crate::step::increment_mpec::*;
 use nalgebra::DMatrix;
-use std::sync::Arc;
 
 /// The normal of the floor of these tests.
 pub(super) const FLOOR: [f64; 3] = [0.0, 0.0, 1.0];
@@ -58,7 +56,7 @@ impl OneBar {
         let supports = [(0, 0), (0, 1), (0, 2)];
         let floor = RigidSurface::Plane { normal: [0.0, 0.0, 1.0] };
         Self {
-            structure: Structure::new(3, 2, &supports, vec![Arc::new(bar)]),
+            structure: Structure::new(3, 2, &supports, [bar].into_iter().collect()),
             contacts: vec![ContactPair {
                 kinematics: Kinematics::Node(1),
                 obstacle: floor,
@@ -75,8 +73,7 @@ impl OneBar {
     fn with_spring(mut self, stiffness: f64) -> Self {
         let mut matrix = [[0.0; 3]; 3];
         (0..3).for_each(|k| matrix[k][k] = stiffness);
-        self.structure =
-            self.structure.with_elements([Arc::new(Spring::to_ground(1, matrix)) as Arc<dyn FiniteElement>]);
+        self.structure = self.structure.with_elements(&[Spring::to_ground(1, matrix)].into_iter().collect());
         self
     }
 

@@ -8,11 +8,9 @@ use crate::mechanics::contact::obstacle::RigidSurface;
 use crate::mechanics::contact::{ContactPair, Reaction, Sliding};
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::structure::Structure;
-use crate::mechanics::structure::elements::FiniteElement;
 use crate::mechanics::structure::elements::spring::Spring;
 use crate::step::increment_mpec::tests_in_space::{forces, in_plane, on_floor};
 use crate::step::increment_mpec::*;
-use std::sync::Arc;
 
 struct Chain {
     structure: Structure,
@@ -32,7 +30,7 @@ impl Chain {
         let pull = [angle.cos(), angle.sin()];
         let mut matrix = [[0.0; 3]; 3];
         (0..3).for_each(|k| matrix[k][k] = stiffness);
-        let tie = |block: usize| -> Arc<dyn FiniteElement> { Arc::new(Spring::between([block, block + 1], matrix)) };
+        let tie = |block: usize| Spring::between([block, block + 1], matrix);
         let structure = Structure::new(3, blocks, &[], (0..blocks - 1).map(tie).collect());
         let floor = RigidSurface::Plane { normal: [0.0, 0.0, 1.0] };
         let contact = |node| ContactPair {

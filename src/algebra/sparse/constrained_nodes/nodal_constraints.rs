@@ -55,5 +55,5 @@ pub(crate) enum Friction {
     /// Reactions remain borders.
     Bordered,
     /// Reactions are eliminated, which makes the matrix unsymmetric.
-    Folded,
+    Eliminated,
 }

@@ -3,15 +3,13 @@
 use crate::algebra::dense::solve_counters::count_solves;
 use crate::algebra::sparse::factors::supernodal_ldl;
 use crate::algebra::sparse::factors::symbolic::Symbolic;
+use crate::algebra::sparse::factors::tolerances::BLOCKED_CHOLESKY_WORK;
 use crate::resources::budget::{self, Taken};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::sparse::linalg::cholesky::{LdltRef, LltRef};
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Conj, MatMut, Par, Side};
-
-/// Multiplications per entry of the factor from which the factorisation works by dense blocks.
-const BY_BLOCKS: f64 = 40.0;
 
 /// Entries of the lower triangle, diagonal included; several at one place are added up.
 pub type Triangle = Vec<(usize, usize, f64)>;
@@ -56,7 +54,7 @@ impl Definite {
         let matrix = SparseColMat::try_new_from_triplets(size, size, &triplets).ok()?;
         let (starts, rows) = (matrix.symbolic().col_ptr(), matrix.symbolic().row_idx());
         let whole = both_triangles(starts, rows);
-        let symbolic = Symbolic::new((starts, rows), (&whole.0, &whole.1), BY_BLOCKS)?;
+        let symbolic = Symbolic::new((starts, rows), (&whole.0, &whole.1), BLOCKED_CHOLESKY_WORK)?;
         let held = budget::take::<f64>(symbolic.cholesky.len_val() + symbolic.indices());
         let values = vec![0.0; symbolic.cholesky.len_val()];
         let mut definite = Self { symbolic, values, scales, _held: held };

@@ -8,6 +8,7 @@
 use crate::algebra::dense::inertia::{Inertia, inertia};
 use crate::algebra::sparse::factors::pattern::Pattern;
 use crate::algebra::sparse::factors::supernodal_ldl;
+use crate::algebra::sparse::factors::tolerances::{PIVOT_SUBSTITUTE, SMALLEST_PIVOT};
 use crate::resources::budget::{self, Taken};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::{LdltError, LdltRegularization};
@@ -37,10 +38,6 @@ pub struct SymmetricFactor {
     _held: Taken,
 }
 
-/// Pivots below this magnitude are raised; the scaled rows have entries of about 1.
-pub(crate) const SMALL: f64 = 1e-4;
-/// Pivots below this magnitude are replaced by it, so that the remaining pivots can be computed.
-const ZERO: f64 = 1e-15;
 /// Number of raised pivots beyond which the factorisation is given up.
 const MOST_RAISED: usize = 256;
 
@@ -66,7 +63,7 @@ impl SymmetricFactor {
             factor.factorise(&scaled)?;
             let mut small = Vec::new();
             factor.each_pivot(&mut |unknown, pivot| {
-                if pivot.abs() < SMALL || !pivot.is_finite() {
+                if pivot.abs() < SMALLEST_PIVOT || !pivot.is_finite() {
                     small.push((unknown, pivot));
                 }
             });
@@ -111,7 +108,7 @@ impl SymmetricFactor {
                     }
                 }
             };
-            supernodal_ldl::factorise(blocks, &mut self.values, &each_below, ZERO);
+            supernodal_ldl::factorise(blocks, &mut self.values, &each_below, PIVOT_SUBSTITUTE);
             return Ok(());
         }
         budget::spend(usize::try_from(symbolic.fill.multiplications).unwrap_or(usize::MAX));
@@ -120,8 +117,8 @@ impl SymmetricFactor {
         let mut memory = MemBuffer::try_new(request).map_err(|_| LdlFailure::OutOfMemory)?;
         let regularization = LdltRegularization {
             dynamic_regularization_signs: None,
-            dynamic_regularization_delta: ZERO,
-            dynamic_regularization_epsilon: ZERO,
+            dynamic_regularization_delta: PIVOT_SUBSTITUTE,
+            dynamic_regularization_epsilon: PIVOT_SUBSTITUTE,
         };
         let done = symbolic.factorize_numeric_ldlt(
             &mut self.values,

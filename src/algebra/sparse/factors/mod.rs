@@ -21,3 +21,4 @@ pub mod pivoted_lu;
 pub(crate) mod static_pivot_lu;
 pub(crate) mod supernodal_ldl;
 pub(crate) mod symbolic;
+pub(crate) mod tolerances;

@@ -3,13 +3,10 @@
 use crate::algebra::sparse::constrained_nodes::node_cache::LastNodes;
 use crate::algebra::sparse::factors::lu_pattern::LuPattern;
 use crate::algebra::sparse::factors::symbolic::Symbolic;
+use crate::algebra::sparse::factors::tolerances::BLOCKED_LDL_WORK;
 use crate::resources::budget::{self, Taken};
 use faer::sparse::SymbolicSparseColMatRef;
 use std::sync::OnceLock;
-
-/// Multiplications per entry of the factor from which the factorisation works by dense blocks, in two thirds of the
-/// time for a plane lattice of 10,000 unknowns.
-const BY_BLOCKS: f64 = 10.0;
 
 /// The sparsity pattern of a symmetric matrix, both triangles by columns, with its symbolic factorisation.
 #[derive(Debug)]
@@ -59,7 +56,7 @@ impl Pattern {
             })
             .collect();
         drop((places, sorting));
-        let symbolic = Symbolic::new((&starts, &rows), (&starts, &rows), BY_BLOCKS)?;
+        let symbolic = Symbolic::new((&starts, &rows), (&starts, &rows), BLOCKED_LDL_WORK)?;
         let held = budget::take::<usize>(size + 2 * rows.len() + symbolic.indices());
         let (fill, last_nodes) = (OnceLock::new(), LastNodes::default());
         Some(Self { size, starts, rows, mirrors, symbolic, fill, last_nodes, _held: held })

@@ -6,8 +6,9 @@
 //! row exchanges; the residual shows where it does not (X. S. Li, J. W. Demmel, ACM Trans. Math. Softw. 29 (2003) 110,
 //! doi:10.1145/779359.779361: static pivoting).
 
-use crate::algebra::sparse::factors::ldl::{SMALL, scales};
+use crate::algebra::sparse::factors::ldl::scales;
 use crate::algebra::sparse::factors::pattern::Pattern;
+use crate::algebra::sparse::factors::tolerances::SMALLEST_PIVOT;
 use crate::resources::budget::{self, Taken};
 use std::sync::Arc;
 
@@ -73,7 +74,7 @@ impl UnsymmetricFactor {
             if !pivot.is_finite() {
                 return None;
             }
-            if pivot.abs() < SMALL {
+            if pivot.abs() < SMALLEST_PIVOT {
                 if factor.raised.len() == MOST_RAISED {
                     return None;
                 }

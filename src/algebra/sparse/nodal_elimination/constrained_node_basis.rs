@@ -3,14 +3,10 @@
 use crate::algebra::sparse::constrained_nodes::held_node::{Coupling, HeldNode, gathered, times, transposed_times};
 use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Friction, Holding, IndexList};
 use crate::algebra::sparse::factors::bordered_matrix::Bordered;
+use crate::algebra::sparse::nodal_elimination::tolerances::{FRICTION_ENTRY_TOLERANCE, INDEPENDENCE_TOLERANCE};
 use nalgebra::{Matrix3, Vector3};
 use smallvec::SmallVec;
 use std::ops::Range;
-
-/// Relative magnitude up to which entries count as zero.
-const NOTHING: f64 = 1e-14;
-/// A node whose constrained directions are closer than this to linear dependence remains in the borders.
-const DEPENDENT: f64 = 1e-6;
 
 /// Builds the node with index `place`; appends its matrices to `numbers` and its couplings to `coupled`. `None` where
 /// the holding cannot be eliminated.
@@ -37,7 +33,7 @@ pub(super) fn from_borders(
     let reaction = leading(&turned, held);
     let mut rest = turned;
     rest.rows_mut(0, held).fill(0.0);
-    let rubs = rest.amax() > NOTHING * largest;
+    let rubs = rest.amax() > FRICTION_ENTRY_TOLERANCE * largest;
     let keeps = rubs && friction == Friction::Bordered;
     let folds = rubs && !keeps;
     let sign_of = |block: &Matrix3<f64>| if held == 1 { block[(0, 0)] } else { block.determinant() }.signum();
@@ -247,7 +243,7 @@ fn inverse(matrix: &Matrix3<f64>, size: usize) -> Option<Matrix3<f64>> {
     let largest = largest_of(matrix);
     let inverse = matrix.try_inverse()?;
     let own = largest_of(&inverse);
-    (inverse.iter().all(|value| value.is_finite()) && own * largest * DEPENDENT < 1.0).then_some(inverse)
+    (inverse.iter().all(|value| value.is_finite()) && own * largest * INDEPENDENCE_TOLERANCE < 1.0).then_some(inverse)
 }
 
 /// An orthogonal matrix whose first columns span the rows.
@@ -266,7 +262,7 @@ fn completed(rows: &Matrix3<f64>, held: usize, count: usize) -> Option<Matrix3<f
     for row in 0..held {
         let row_vector: Vector3<f64> = rows.row(row).transpose();
         let (own, size) = (rest(&basis, row, row_vector), row_vector.norm());
-        if own.norm() <= DEPENDENT * size || size == 0.0 {
+        if own.norm() <= INDEPENDENCE_TOLERANCE * size || size == 0.0 {
             return None;
         }
         basis.set_column(row, &own.normalize());

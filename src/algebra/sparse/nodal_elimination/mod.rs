@@ -14,6 +14,7 @@
 
 pub(crate) mod constrained_node_basis;
 pub(crate) mod nodes;
+pub(crate) mod tolerances;
 
 pub(super) use crate::algebra::sparse::constrained_nodes::held_node::{Coupling, HeldNode, Matrices, gathered, times};
 pub(super) use crate::algebra::sparse::constrained_nodes::nodal_constraints::Friction;
@@ -148,7 +149,7 @@ impl Elimination {
 
     /// The contributions of a column's entries at constrained unknowns to the free equations of their nodes, where
     /// friction is eliminated.
-    pub fn folded(&self, held: &[(usize, f64)]) -> SparseEntries {
+    pub fn eliminated_friction(&self, held: &[(usize, f64)]) -> SparseEntries {
         let mut free = SparseEntries::new();
         for (unknown, value) in held {
             let Some((node, local)) = self.nodes.place_of[*unknown] else { continue };

@@ -31,19 +31,16 @@
 
 use crate::algebra::{nearest_null_space, null_space_as_scaled};
 use crate::branching::bifurcation::branch_directions::null_derivatives::Derivative;
-use crate::branching::bifurcation::branch_directions::{BranchingPoint, MOST_MODES, NO_CURVATURE, Null};
+use crate::branching::bifurcation::branch_directions::tolerances::{
+    COORDINATE_RANK_TOLERANCE, CURVATURE_TOLERANCE, REMAINING_MOTION, SMALLEST_PARABOLA_WIDTH,
+};
+use crate::branching::bifurcation::branch_directions::{BranchingPoint, MOST_MODES, Null};
 use crate::complementarity::rates::combinations::combinations;
-use crate::mechanics::equations::scaled_rows::{RANK, scaled_rows};
+use crate::mechanics::equations::scaled_rows::scaled_rows;
+use crate::mechanics::equations::tolerances::RANK_TOLERANCE;
+use crate::mechanics::equations::{matrix, rate_recovery};
 use crate::mechanics::problem::state::Rate;
 use nalgebra::{DMatrix, DVector, DVectorView, Matrix2};
-
-/// A null vector that retains no more than this part of its motion depends on the others.
-const NO_MOTION: f64 = 1e-8;
-/// Parabolas no wider than this at a unit arc length count as lines: round-off in the equations moves a point at the
-/// fold by as much.
-const NO_WIDTH: f64 = 1e-7;
-/// Singular values of the coordinate vectors (of unit size) up to this are zero: the vectors are linearly dependent.
-const DEPENDENT: f64 = 1e-6;
 
 /// A double root of the bifurcation equation.
 pub(super) struct Fold {
@@ -79,7 +76,7 @@ impl Fold {
 
     /// The parts that have arms.
     fn wide(&self) -> impl Iterator<Item = &FoldPart> {
-        self.parts.iter().filter(|part| part.width > NO_WIDTH)
+        self.parts.iter().filter(|part| part.width > SMALLEST_PARABOLA_WIDTH)
     }
 
     /// The direction in which the arms leave; `None` where the arms of two parts leave in opposite senses.
@@ -116,14 +113,14 @@ impl Fold {
 /// The null vectors of the mode, orthonormal in displacements and load.
 pub(super) fn orthonormal_nulls(point: &BranchingPoint<'_>) -> Option<Vec<Null>> {
     let (matrix, _) = scaled_rows(&point.system, point.here.loading, point.here.state);
-    orthonormal(point, &null_space_as_scaled(matrix, RANK)?)
+    orthonormal(point, &null_space_as_scaled(matrix, RANK_TOLERANCE)?)
 }
 
 fn orthonormal(point: &BranchingPoint<'_>, basis: &DMatrix<f64>) -> Option<Vec<Null>> {
     let mut nulls: Vec<Null> = Vec::with_capacity(basis.ncols());
     for column in basis.column_iter() {
         let values = column.into_owned();
-        let mut null = Null { rate: point.system.rate_from(point.here.state, &values), values };
+        let mut null = Null { rate: rate_recovery::rate_from(&point.system, point.here.state, &values), values };
         let whole = null.rate.size();
         // A second pass removes what round-off left.
         for _ in 0..2 {
@@ -133,7 +130,10 @@ fn orthonormal(point: &BranchingPoint<'_>, basis: &DMatrix<f64>) -> Option<Vec<N
             }
         }
         let size = null.rate.size();
-        if !(size.is_finite() && size > NO_MOTION * whole && size > NO_MOTION * null.rate.largest_reaction()) {
+        if !(size.is_finite()
+            && size > REMAINING_MOTION * whole
+            && size > REMAINING_MOTION * null.rate.largest_reaction())
+        {
             return None;
         }
         nulls.push(point.combined(&[null], &[1.0 / size]));
@@ -159,12 +159,12 @@ pub(super) fn plane(point: &BranchingPoint<'_>) -> Option<Plane> {
     let eigen = form.symmetric_eigen();
     let (steep, flat) = if eigen.eigenvalues[0].abs() >= eigen.eigenvalues[1].abs() { (0, 1) } else { (1, 0) };
     let (most, least) = (eigen.eigenvalues[steep], eigen.eigenvalues[flat]);
-    if !most.is_finite() || most.abs() <= NO_CURVATURE * size {
+    if !most.is_finite() || most.abs() <= CURVATURE_TOLERANCE * size {
         return Some(Plane::Continuum);
     }
     let combined = |weights: [f64; 2]| unit(point, &point.combined(&[first.clone(), second.clone()], &weights));
     let [flat, steep] = [flat, steep].map(|column| [0, 1].map(|row| eigen.eigenvectors[(row, column)]));
-    if least.abs() > NO_CURVATURE * most.abs() {
+    if least.abs() > CURVATURE_TOLERANCE * most.abs() {
         if least * most > 0.0 {
             return Some(Plane::Roots(Vec::new()));
         }
@@ -190,15 +190,15 @@ pub(super) fn fold_of_parts(point: &BranchingPoint<'_>, count: usize) -> Option<
         let eigen = ((&form + form.transpose()) * 0.5).symmetric_eigen();
         let sizes = eigen.eigenvalues.abs();
         let most = sizes.imax();
-        let is_square = (0..count).all(|other| other == most || sizes[other] <= NO_CURVATURE * sizes[most]);
-        if !(is_square && sizes[most] > NO_CURVATURE * left.amax() * largest) {
+        let is_square = (0..count).all(|other| other == most || sizes[other] <= CURVATURE_TOLERANCE * sizes[most]);
+        if !(is_square && sizes[most] > CURVATURE_TOLERANCE * left.amax() * largest) {
             return None;
         }
         row.copy_from(&eigen.eigenvectors.column(most).transpose());
     }
     // Motions along each of which one coordinate changes, and the motion along which none does.
-    let dual = squares.clone().pseudo_inverse(DEPENDENT).ok()?;
-    if (&squares * &dual - DMatrix::identity(left.ncols(), left.ncols())).amax() > DEPENDENT {
+    let dual = squares.clone().pseudo_inverse(COORDINATE_RANK_TOLERANCE).ok()?;
+    if (&squares * &dual - DMatrix::identity(left.ncols(), left.ncols())).amax() > COORDINATE_RANK_TOLERANCE {
         return None;
     }
     let motion = |weights: &DVector<f64>| unit(point, &point.combined(&nulls, weights.as_slice()));
@@ -227,7 +227,7 @@ fn fold(point: &BranchingPoint<'_>, left: &DMatrix<f64>, mut flat: Null, steep: 
         }
         flat = unit(point, &point.combined(&nulls, &weights));
     }
-    let force = point.system.matrix(point.here.state).rows(0, left.nrows()) * &flat.values;
+    let force = matrix::rate_matrix(&point.system, point.here.state).rows(0, left.nrows()) * &flat.values;
     let part = |((left, steep), curvature): ((DVectorView<'_, f64>, Null), &f64)| {
         let ratio = left.dot(&force) / curvature;
         FoldPart { steep, width: (2.0 * ratio.abs()).sqrt(), sense: -ratio.signum() }

@@ -13,23 +13,19 @@
 //! with cubics `c_j` fitted to their values. Newton's method solves both systems from starting directions all around.
 //! All of it takes one factorisation of the matrix and one of its transpose.
 
+use crate::branching::bifurcation::branch_directions::tolerances::{
+    REDUCED_RESIDUAL, SINGULAR_VALUE_BOUND, THIRD_DERIVATIVE_STEP,
+};
 use crate::branching::bifurcation::branch_directions::{AROUND, Null};
 use crate::branching::bifurcation::singularity::bordering::{Bordering, orthonormal};
 use crate::branching::bifurcation::singularity::null_vectors::NullVectors;
-use crate::mechanics::equations::{Kind, ModeSystem};
+use crate::mechanics::equations::{Kind, ModeSystem, matrix};
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::budget;
 use nalgebra::{DMatrix, DVector};
 
 /// Newton iterations.
 const MOST_ITERATIONS: usize = 30;
-/// Relative residual at which the iteration has converged.
-const CONVERGED: f64 = 1e-12;
-/// Singular values up to this, relative, are zero: along a continuum of branches Newton's method takes the shortest
-/// correction.
-const SINGULAR: f64 = 1e-8;
-/// Difference step (dimensionless) for third derivatives.
-const DIFFERENCE: f64 = 1e-3;
 
 /// The reduced equations for the shares of the path's own direction and of the other null vectors.
 pub(super) struct LyapunovSchmidtEquations {
@@ -78,11 +74,11 @@ impl LyapunovSchmidtEquations {
                 return None;
             }
             let (values, slopes, size) = self.at(&shares);
-            if values.amax() <= CONVERGED * size {
+            if values.amax() <= REDUCED_RESIDUAL * size {
                 return Some(shares);
             }
             let scale = slopes.amax().max(f64::MIN_POSITIVE);
-            shares -= (slopes / scale).svd(true, true).solve(&(values / scale), SINGULAR).ok()?;
+            shares -= (slopes / scale).svd(true, true).solve(&(values / scale), SINGULAR_VALUE_BOUND).ok()?;
         }
         None
     }
@@ -198,7 +194,7 @@ fn cubics(
             values[(sample, j)] = 0.5 * of(&mixed) + of(&third) / 6.0;
         }
     }
-    let fitted = matrix.svd(true, true).solve(&values, SINGULAR).ok()?;
+    let fitted = matrix.svd(true, true).solve(&values, SINGULAR_VALUE_BOUND).ok()?;
     Some(fitted.column_iter().map(|column| column.into_owned()).collect())
 }
 
@@ -209,10 +205,10 @@ fn third_derivative(
     along: &Rate,
     motion: &DVector<f64>,
 ) -> Option<DVector<f64>> {
-    let step = DIFFERENCE / along.size();
+    let step = THIRD_DERIVATIVE_STEP / along.size();
     let at = |step: f64| {
         let state = state.advanced(along, step);
-        Some(system.assemble_sparse(&system.iterate(state), Kind::Rates)?.times(motion))
+        Some(matrix::assemble_sparse(system, &system.iterate(state), Kind::Rates)?.times(motion))
     };
     Some((at(step)? - at(0.0)? * 2.0 + at(-step)?) / (step * step))
 }

@@ -32,23 +32,28 @@ pub(crate) mod other_modes;
 pub(crate) mod second_order_by_mode;
 #[cfg(test)]
 mod tests;
+pub(crate) mod tolerances;
 
 pub use second_order_by_mode::{SecondOrderFindings, in_each_mode};
 
 use crate::algebra::{nearest_null_space, null_space_as_scaled};
-use crate::branching::bifurcation::singularity::null_vectors::{NullVectors, SINGULAR};
+use crate::branching::bifurcation::branch_directions::tolerances::{
+    COINCIDENCE_COSINE, CURVATURE_TOLERANCE, DOUBTFUL_MARGIN, SEARCH_RADIUS,
+};
+use crate::branching::bifurcation::singularity::null_vectors::NullVectors;
+use crate::branching::bifurcation::singularity::tolerances::SINGULAR_PIVOT;
 use crate::branching::directions::candidate::{Alternative, CandidateDirection};
 use crate::branching::directions::choice::{DirectionChoice, potential_rate, sign_of};
 use crate::branching::directions::trial_step::confirm_by;
 use crate::mechanics::contact::vector::{add, dot};
 use crate::mechanics::contact::{Mode, Reaction};
-use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::closing_equation::ArcLengthEquation;
 use crate::mechanics::equations::scaled_rows::scaled_rows;
+use crate::mechanics::equations::{ModeSystem, rate_recovery};
 use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
-use crate::step::corrector::cached_factorisation::AtHand;
+use crate::step::corrector::cached_factorisation::CachedFactorisation;
 use crate::step::corrector::newton;
 use lyapunov_schmidt::LyapunovSchmidtEquations;
 use nalgebra::{DMatrix, DVector};
@@ -75,18 +80,10 @@ pub struct SingularPoint<'a> {
     pub force_scale: f64,
 }
 
-/// Second derivatives up to this, relative to the largest, are zero.
-const NO_CURVATURE: f64 = 1e-6;
 /// Radii of the spheres on which branches are tried.
 const RADII: [f64; 3] = [1e-3, 1e-2, 1e-4];
-/// Radius of the sphere on which branch points are sought.
-const SOUGHT_AT: f64 = 1e-2;
 /// Directions around the plane of two null vectors.
 const AROUND: usize = 36;
-/// Directions closer than this (cosine) count as one.
-pub const SAME: f64 = 1.0 - 1e-5;
-/// Inequalities (of unit arc length) satisfied with a margin smaller than this are in doubt.
-const DOUBT: f64 = 1e-7;
 /// The most isolated roots besides the path that two cubics in two ratios have, each root taken in both senses.
 const MOST_ISOLATED: usize = 8;
 /// Modes that are examined besides the path's own.
@@ -158,7 +155,7 @@ impl BranchingPoint<'_> {
             is_singular: false,
             beside: None,
             is_tried: true,
-            at_hand: AtHand::default(),
+            cached: CachedFactorisation::default(),
         }
     }
 
@@ -172,7 +169,7 @@ impl BranchingPoint<'_> {
             let pairs = known.rate.reactions.iter().zip(&direction.reactions);
             let reactions =
                 |(one, other): (&Reaction, &Reaction)| one.difference(other) <= 1e-4 * forces.max(force_scale);
-            known.rate.product(&direction) > SAME && pairs.into_iter().all(reactions)
+            known.rate.product(&direction) > COINCIDENCE_COSINE && pairs.into_iter().all(reactions)
         };
         if found.options.iter().any(same) {
             return;
@@ -187,7 +184,7 @@ impl BranchingPoint<'_> {
             alternatives,
             weak: true,
             dissipation: 0.0,
-            at_hand: AtHand::default(),
+            cached: CachedFactorisation::default(),
         };
         let tried = RADII.iter().find_map(|radius| confirm_by(loading, state, &candidate, force_scale, &[*radius]));
         match tried {
@@ -199,7 +196,7 @@ impl BranchingPoint<'_> {
     /// The modes that each contact that can change admits along a direction; `None` where some contact admits none.
     fn alternatives(&self, rate: &Rate) -> Option<Vec<Vec<Alternative>>> {
         let SingularPoint { loading, state, standings, force_scale } = self.here;
-        let forces = DOUBT * rate.largest_reaction().max(force_scale);
+        let forces = DOUBTFUL_MARGIN * rate.largest_reaction().max(force_scale);
         let mut all = Vec::new();
         for (contact, standing) in standings.iter().enumerate() {
             let (motion, change) = (loading.relative_rate(contact, state, rate), &rate.reactions[contact]);
@@ -227,7 +224,10 @@ impl BranchingPoint<'_> {
                 }
             };
             let holds = |(_, zero, least): &(Mode, [f64; 2], [f64; 2])| {
-                zero[0].abs() <= DOUBT && zero[1].abs() <= forces && least[0] >= -DOUBT && least[1] >= -forces
+                zero[0].abs() <= DOUBTFUL_MARGIN
+                    && zero[1].abs() <= forces
+                    && least[0] >= -DOUBTFUL_MARGIN
+                    && least[1] >= -forces
             };
             let alternatives: Vec<Alternative> =
                 options.iter().filter(|option| holds(option)).map(|(mode, ..)| vec![(contact, *mode)]).collect();
@@ -247,7 +247,10 @@ impl BranchingPoint<'_> {
         let (matrix, sizes) = scaled_rows(&self.system, self.here.loading, self.here.state);
         let (mut left, right) = match self.eigenvalues {
             Some(count) => (nearest_null_space(matrix.transpose(), count)?, nearest_null_space(matrix, count + 1)?),
-            None => (null_space_as_scaled(matrix.transpose(), SINGULAR)?, null_space_as_scaled(matrix, SINGULAR)?),
+            None => (
+                null_space_as_scaled(matrix.transpose(), SINGULAR_PIVOT)?,
+                null_space_as_scaled(matrix, SINGULAR_PIVOT)?,
+            ),
         };
         for mut column in left.column_iter_mut() {
             column.component_div_assign(&sizes);
@@ -287,11 +290,13 @@ impl BranchingPoint<'_> {
             back.scale(-1.0);
             [ahead, back]
         };
-        let rates: Vec<Rate> =
-            basis.column_iter().map(|column| self.system.rate_from(self.here.state, &column.into_owned())).collect();
+        let rates: Vec<Rate> = basis
+            .column_iter()
+            .map(|column| rate_recovery::rate_from(&self.system, self.here.state, &column.into_owned()))
+            .collect();
         let largest = rates.iter().max_by(|a, b| a.load.abs().total_cmp(&b.load.abs()));
         let Some(first) = largest else { return Some(Vec::new()) };
-        if first.size() <= SINGULAR * first.largest_reaction() {
+        if first.size() <= SINGULAR_PIVOT * first.largest_reaction() {
             return None;
         }
         let (own, others) = self.split(&basis, first)?;
@@ -301,7 +306,7 @@ impl BranchingPoint<'_> {
                 let left = left.column(0).into_owned();
                 let (along_own, along) = (self.second_derivative(&own.rate), self.second_derivative(&other.rate));
                 let size = left.amax() * along_own.amax().max(along.amax());
-                let flat = |value: f64| if value.abs() <= NO_CURVATURE * size { 0.0 } else { value };
+                let flat = |value: f64| if value.abs() <= CURVATURE_TOLERANCE * size { 0.0 } else { value };
                 let own_own = flat(left.dot(&along_own.times(&own.values)));
                 let mixed = flat(left.dot(&along.times(&own.values)));
                 let pure = flat(left.dot(&along.times(&other.values)));
@@ -328,7 +333,7 @@ impl BranchingPoint<'_> {
             .column_iter()
             .map(|column| {
                 let values = column.into_owned();
-                Null { rate: self.system.rate_from(self.here.state, &values), values }
+                Null { rate: rate_recovery::rate_from(&self.system, self.here.state, &values), values }
             })
             .collect();
         let count = nulls.len();
@@ -354,7 +359,7 @@ impl BranchingPoint<'_> {
             let largest = (0..rest.len()).max_by(|&a, &b| rest[a].rate.size().total_cmp(&rest[b].rate.size()))?;
             let null = rest.swap_remove(largest);
             let size = null.rate.size();
-            if size < SINGULAR {
+            if size < SINGULAR_PIVOT {
                 return None;
             }
             others.push(self.combined(&[null], &[1.0 / size]));
@@ -367,7 +372,7 @@ impl BranchingPoint<'_> {
         for (null, weight) in nulls.iter().zip(weights) {
             values.axpy(*weight, &null.values, 1.0);
         }
-        Null { rate: self.system.rate_from(self.here.state, &values), values }
+        Null { rate: rate_recovery::rate_from(&self.system, self.here.state, &values), values }
     }
 
     fn second_derivative(&self, along: &Rate) -> Derivative {
@@ -379,9 +384,9 @@ impl BranchingPoint<'_> {
         let mixed = left.dot(&derivative.times(&own.values));
         let pure = left.dot(&derivative.times(&other.values));
         let size = left.amax() * derivative.amax();
-        let weights = if mixed.abs() > NO_CURVATURE * size {
+        let weights = if mixed.abs() > CURVATURE_TOLERANCE * size {
             let ratio = -0.5 * pure / mixed;
-            [1.0, if ratio.abs() <= NO_CURVATURE { 0.0 } else { ratio }]
+            [1.0, if ratio.abs() <= CURVATURE_TOLERANCE { 0.0 } else { ratio }]
         } else {
             // The eigenvalue does not cross at first order.
             *degenerate = true;
@@ -406,7 +411,7 @@ impl BranchingPoint<'_> {
                 pure = pure.max((left.transpose() * derivative.times(&second.values)).amax());
             }
         }
-        pure > NO_CURVATURE * mixed
+        pure > CURVATURE_TOLERANCE * mixed
     }
 
     /// The directions of the branches by the equations reduced to the null vectors.
@@ -421,7 +426,7 @@ impl BranchingPoint<'_> {
                 shares[0] = 0.0;
             }
             let Some(direction) = self.combined(&all, shares.as_slice()).rate.normalised() else { continue };
-            let is_known = |other: &Rate| direction.product(other) > SAME;
+            let is_known = |other: &Rate| direction.product(other) > COINCIDENCE_COSINE;
             if direction.product(&own.rate).abs() < 0.999 * own.rate.size() && !found.iter().any(is_known) {
                 found.push(direction);
             }
@@ -455,7 +460,7 @@ impl BranchingPoint<'_> {
                         continue;
                     }
                     direction.scale(1.0 / size);
-                    let known = |other: &Rate| direction.product(other) > SAME;
+                    let known = |other: &Rate| direction.product(other) > COINCIDENCE_COSINE;
                     if direction.product(tangent).abs() < 0.999 && !found.iter().any(known) {
                         found.push(direction);
                     }
@@ -467,8 +472,8 @@ impl BranchingPoint<'_> {
 
     /// The direction of a branch at the point itself: chords to two radii, extrapolated to radius zero.
     fn branch_near(&self, direction: &Rate) -> Option<Rate> {
-        let far = self.on_sphere(direction, SOUGHT_AT)?;
-        let near = self.on_sphere(&far, 0.5 * SOUGHT_AT)?;
+        let far = self.on_sphere(direction, SEARCH_RADIUS)?;
+        let near = self.on_sphere(&far, 0.5 * SEARCH_RADIUS)?;
         let mut rate = near;
         rate.scale(2.0);
         rate.add(&far, -1.0);

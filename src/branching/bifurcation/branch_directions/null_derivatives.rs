@@ -1,13 +1,11 @@
 //! Null vectors at a point, and second derivatives along them.
 
 use crate::algebra::sparse::Bordered;
-use crate::branching::bifurcation::singularity::bordering::DIFFERENCE as FINE;
-use crate::mechanics::equations::{Kind, ModeSystem};
+use crate::branching::bifurcation::branch_directions::tolerances::SECOND_DERIVATIVE_STEP;
+use crate::branching::bifurcation::singularity::tolerances::EXTRAPOLATED_DIFFERENCE_STEP as FINE;
+use crate::mechanics::equations::{Kind, ModeSystem, matrix};
 use crate::mechanics::problem::state::{Rate, State};
 use nalgebra::{DMatrix, DVector};
-
-/// Difference step (dimensionless) for the second derivative.
-const DIFFERENCE: f64 = 1e-4;
 
 /// A null vector as values of the unknowns and as a rate.
 #[derive(Clone)]
@@ -27,7 +25,8 @@ impl Derivative {
     pub fn new(system: &ModeSystem<'_>, state: &State, along: &Rate) -> Self {
         let rows = system.size() - 1;
         let sparse = |step: f64| {
-            let at = |step: f64| system.assemble_sparse(&system.iterate(state.advanced(along, step)), Kind::Rates);
+            let at =
+                |step: f64| matrix::assemble_sparse(system, &system.iterate(state.advanced(along, step)), Kind::Rates);
             Some(at(step)?.minus(&at(-step)?, 0.5 / step))
         };
         if let Some(coarse) = sparse(FINE)
@@ -36,9 +35,9 @@ impl Derivative {
             // Richardson extrapolation, of fourth order.
             return Self::Sparse(fine.minus(&coarse.scaled(0.25), 4.0 / 3.0), rows);
         }
-        let ahead = system.matrix(&state.advanced(along, DIFFERENCE));
-        let behind = system.matrix(&state.advanced(along, -DIFFERENCE));
-        Self::Dense((ahead - behind).rows(0, rows) / (2.0 * DIFFERENCE))
+        let ahead = matrix::rate_matrix(system, &state.advanced(along, SECOND_DERIVATIVE_STEP));
+        let behind = matrix::rate_matrix(system, &state.advanced(along, -SECOND_DERIVATIVE_STEP));
+        Self::Dense((ahead - behind).rows(0, rows) / (2.0 * SECOND_DERIVATIVE_STEP))
     }
 
     pub fn times(&self, values: &DVector<f64>) -> DVector<f64> {

@@ -1,11 +1,13 @@
 //! Directions at a bifurcation point in other modes of the contacts that can change there.
 
-use crate::branching::bifurcation::branch_directions::{Branches, BranchingPoint, DOUBT, MOST_MODES, SingularPoint};
+use crate::branching::bifurcation::branch_directions::tolerances::DOUBTFUL_MARGIN;
+use crate::branching::bifurcation::branch_directions::{Branches, BranchingPoint, MOST_MODES, SingularPoint};
 use crate::branching::bifurcation::singularity::bordering::{Bordering, orthonormal};
-use crate::branching::bifurcation::singularity::null_vectors::{NullVectors, SINGULAR};
+use crate::branching::bifurcation::singularity::null_vectors::NullVectors;
+use crate::branching::bifurcation::singularity::tolerances::SINGULAR_PIVOT;
 use crate::complementarity::rates::combinations::{combinations, count};
 use crate::mechanics::contact::Mode;
-use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::equations::{ModeSystem, rate_recovery};
 use crate::mechanics::multi_contact::contact_status::Standing;
 use nalgebra::{DMatrix, DVector};
 
@@ -57,11 +59,11 @@ fn in_mode(
     nulls: &NullVectors,
 ) -> Option<NullVectors> {
     let other = ModeSystem::new(here.loading, modes, here.state);
-    let rows = orthonormal(nulls.right.iter().map(|values| other.rate_from(here.state, values)))?;
+    let rows = orthonormal(nulls.right.iter().map(|values| rate_recovery::rate_from(&other, here.state, values)))?;
     let unknowns = here.loading.structure.unknowns();
     let columns: Option<Vec<DVector<f64>>> =
         nulls.left.iter().map(|left| left.rows(0, unknowns).into_owned().try_normalize(0.0)).collect();
-    Bordering::new(system, here.state.clone(), &rows, &columns?)?.null_vectors(SINGULAR)
+    Bordering::new(system, here.state.clone(), &rows, &columns?)?.null_vectors(SINGULAR_PIVOT)
 }
 
 /// Whether some motion without load among the null vectors leaves all contacts that can change at rest: then the
@@ -73,7 +75,7 @@ pub fn are_singular_in_all_modes(here: SingularPoint<'_>, modes: &[Mode], nulls:
         .right
         .iter()
         .map(|values| {
-            let rate = system.rate_from(here.state, values);
+            let rate = rate_recovery::rate_from(&system, here.state, values);
             let size = rate.size();
             let motions = (0..modes.len())
                 .filter(can_change)
@@ -86,5 +88,5 @@ pub fn are_singular_in_all_modes(here: SingularPoint<'_>, modes: &[Mode], nulls:
         .collect();
     let count = told.len();
     let gram = DMatrix::from_fn(count, count, |i, j| told[i].dot(&told[j]));
-    gram.symmetric_eigenvalues().iter().any(|value| *value <= DOUBT * DOUBT)
+    gram.symmetric_eigenvalues().iter().any(|value| *value <= DOUBTFUL_MARGIN * DOUBTFUL_MARGIN)
 }

@@ -18,8 +18,11 @@
 
 use crate::branching::bifurcation::branch_directions::fold;
 use crate::branching::bifurcation::branch_directions::fold::{Fold, Plane};
+use crate::branching::bifurcation::branch_directions::tolerances::{
+    COINCIDENCE_COSINE, FIRST_ORDER_TOLERANCE, LOCATION_ERROR, RATE_CHANGE_TOLERANCE, SMALLEST_CURVATURE_RADIUS,
+};
 use crate::branching::bifurcation::branch_directions::{
-    AtHand, BranchingPoint, MOST_MODES, Null, RADII, SAME, SingularPoint,
+    BranchingPoint, CachedFactorisation, MOST_MODES, Null, RADII, SingularPoint,
 };
 use crate::branching::directions::candidate::{CandidateDirection, is_mechanism};
 use crate::branching::directions::choice::DirectionChoice;
@@ -27,10 +30,10 @@ use crate::branching::directions::trial_step::confirm_by;
 use crate::complementarity::rates::combinations::{combinations, count};
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::scaled;
-use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::equations::{ModeSystem, deflation, factorisation, rate_recovery};
 use crate::mechanics::multi_contact::contact_status::Standing;
-use crate::mechanics::problem::natural_residual::ZERO;
 use crate::mechanics::problem::state::{Rate, State};
+use crate::mechanics::problem::tolerances::CONTACT_TOLERANCE;
 use crate::step::event_functions::{self, Watch};
 
 /// The directions at a point that satisfy the inequalities at second order.
@@ -40,19 +43,6 @@ pub struct SecondOrderFindings {
     /// on some direction.
     pub unclear: bool,
 }
-
-/// Rates of first order up to this (of unit arc length; forces relative to the largest) are decided at second order, as
-/// they are decided by trial steps elsewhere.
-const IN_DOUBT: f64 = 1e-8;
-/// Accuracy of the events' location along the path (dimensionless): where the path bends sharply, a quantity that is
-/// zero at an event is zero at first order except for its change over this arc length.
-const LOCATED: f64 = 1e-11;
-/// Changes of rates up to this part of the largest are zero: they are within the error of the differences of the
-/// tangent.
-const NO_CHANGE: f64 = 1e-6;
-
-/// Radius of curvature (dimensionless) below which no step follows a bend: the path resumes past the bend.
-const SHARP: f64 = 1e-5;
 
 /// A direction of a mode.
 struct ModeDirection {
@@ -122,7 +112,7 @@ fn ways(point: &BranchingPoint<'_>, unclear: &mut bool) -> Option<Vec<ModeDirect
     match &nulls[..] {
         [only] => {
             let bend = bend(point, only);
-            let is_sharp = bend.as_ref().is_some_and(|bend| bend.size() > 1.0 / SHARP);
+            let is_sharp = bend.as_ref().is_some_and(|bend| bend.size() > 1.0 / SMALLEST_CURVATURE_RADIUS);
             let both = both(point, only, bend, false);
             match if is_sharp { fold::plane(point)? } else { Plane::Continuum } {
                 Plane::Fold(fold) => Some(past_bend(point, &fold, both)),
@@ -184,15 +174,20 @@ fn bend(point: &BranchingPoint<'_>, null: &Null) -> Option<Rate> {
 fn bend_at_fold(point: &BranchingPoint<'_>, flat: &Null) -> Option<Rate> {
     let SingularPoint { loading, state, .. } = point.here;
     let mut system = ModeSystem::new(loading, point.modes, state);
-    let bend = if system.hold_still(state, &flat.rate) { bend_by(point, &system, flat) } else { None };
-    bend.filter(|bend| bend.size() > NO_CHANGE)
+    let bend = if deflation::suppress_open_motions(&mut system, state, &flat.rate) {
+        bend_by(point, &system, flat)
+    } else {
+        None
+    };
+    bend.filter(|bend| bend.size() > RATE_CHANGE_TOLERANCE)
 }
 
 fn bend_by(point: &BranchingPoint<'_>, system: &ModeSystem<'_>, null: &Null) -> Option<Rate> {
-    let factorisation = system.bordered(&system.iterate(point.here.state.clone()), &null.rate)?;
+    let factorisation =
+        factorisation::factorise_bordered(system, &system.iterate(point.here.state.clone()), &null.rate)?;
     let curved = point.second_derivative(&null.rate).times(&null.values);
     let mut values = -curved.insert_row(system.size() - 1, 0.0);
-    factorisation.solve(&mut values).then(|| system.rate_from(point.here.state, &values))
+    factorisation.solve(&mut values).then(|| rate_recovery::rate_from(system, point.here.state, &values))
 }
 
 /// Adds a direction that holds and is not in the list yet.
@@ -202,9 +197,9 @@ fn tell(point: &BranchingPoint<'_>, way: ModeDirection, told: &mut SecondOrderFi
     let forces = rate.largest_reaction().max(f64::MIN_POSITIVE);
     let is_known = |known: &DirectionChoice| {
         let mut pairs = known.rate.reactions.iter().zip(&rate.reactions);
-        known.rate.product(rate) > SAME
+        known.rate.product(rate) > COINCIDENCE_COSINE
             && known.beside == way.beside
-            && pairs.all(|(one, other)| one.difference(other) <= IN_DOUBT * forces)
+            && pairs.all(|(one, other)| one.difference(other) <= FIRST_ORDER_TOLERANCE * forces)
     };
     let later = way.bend.as_ref().map_or(0.0, |bend| bend.load / bend.size().max(f64::MIN_POSITIVE));
     let confirmed = match verdict(point, &way) {
@@ -219,7 +214,7 @@ fn tell(point: &BranchingPoint<'_>, way: ModeDirection, told: &mut SecondOrderFi
                 alternatives: Vec::new(),
                 weak: true,
                 dissipation: 0.0,
-                at_hand: AtHand::default(),
+                cached: CachedFactorisation::default(),
             };
             let tried = |radius: &f64| confirm_by(loading, state, &candidate, force_scale, &[*radius]);
             RADII.iter().find_map(tried)
@@ -242,13 +237,13 @@ fn verdict(point: &BranchingPoint<'_>, way: &ModeDirection) -> DirectionVerdict 
     for watch in event_functions::of_mode(loading, point.modes, state, rate) {
         let value = watch.value(loading, point.modes, state, rate);
         let slope = watch.slope(loading, point.modes, state, rate);
-        if slope.is_some() && watch.is_above_zero(loading, state, value, ZERO, force_scale) {
+        if slope.is_some() && watch.is_above_zero(loading, state, value, CONTACT_TOLERANCE, force_scale) {
             continue;
         }
         let size = if watch.is_of_forces() { rate.largest_reaction().max(f64::MIN_POSITIVE) } else { 1.0 };
         let first = slope.unwrap_or(value) / size;
         let second = bent.as_ref().map(|bent| bent.change(point, watch) / size);
-        let doubt = IN_DOUBT + second.map_or(0.0, |second| LOCATED * second.abs());
+        let doubt = FIRST_ORDER_TOLERANCE + second.map_or(0.0, |second| LOCATION_ERROR * second.abs());
         let rising = if first.abs() > doubt { first } else { second.unwrap_or(0.0) };
         if rising < 0.0 {
             return DirectionVerdict::Fails;
@@ -301,6 +296,6 @@ impl Bent {
         };
         let change = (at(&self.state, &self.rate) - at(state, &self.before)) / self.way;
         let largest = if watch.is_of_forces() { self.force } else { self.motion };
-        if change.abs() <= NO_CHANGE * largest { 0.0 } else { change }
+        if change.abs() <= RATE_CHANGE_TOLERANCE * largest { 0.0 } else { change }
     }
 }

@@ -15,15 +15,20 @@
 //! it.
 
 use crate::algebra::SystemFactorisation;
-use crate::branching::bifurcation::locate::{AT_START, Crossing, Located};
+use crate::branching::bifurcation::locate::tolerances::{
+    BORDERED_CORRECTION, BRACKET_MARGIN, CLUSTER_WIDTH, CONTINUATION_COSINE, COUNTING_OFFSET, DISTANCE_FROM_PATH,
+    ORTHOGONAL_REMAINDER, REAL_EIGENVALUE_TOLERANCE, STALLED_CORRECTION, START_DISTANCE, TEST_FUNCTION_TOLERANCE,
+};
+use crate::branching::bifurcation::locate::{Crossing, Located};
 use crate::branching::bifurcation::singularity::bordering::{Bordering, orthonormal};
 use crate::branching::bifurcation::singularity::null_vectors::NullVectors;
 use crate::branching::bifurcation::singularity::test_functions::{Signature, SignatureChange};
-use crate::mechanics::equations::{Kind, ModeSystem};
+use crate::mechanics::equations::{Kind, ModeSystem, factorisation, matrix, rate_recovery, residual};
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::budget;
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
+use crate::step::corrector::newton;
+use crate::step::corrector::tolerances::ACCEPTED_RESIDUAL;
 use crate::step::interpolation::{PlacedPoint, between, placed, unit};
 use crate::step::segment::{Reached, StepStart};
 use nalgebra::{Complex, DMatrix, DVector};
@@ -36,33 +41,10 @@ const BESIDE: usize = 3;
 /// Largest number of vectors of the block: for more crossings eigenvalues are counted in shorter and shorter parts of
 /// the step.
 const MOST_IN_BLOCK: usize = 8;
-/// Part of a vector orthogonal to the others, relative to its size, up to which it is round-off.
-const AMONG_OTHERS: f64 = 1e-10;
-/// An eigenvalue whose imaginary part is no larger than this part of it is real.
-const REAL: f64 = 1e-6;
-/// Expected crossings this close to each other, relative to the bracket, are first treated as one.
-const CLOSE: f64 = 2e-2;
-/// Largest distance outside the bracket, relative to the bracket, at which a crossing may be expected: the estimate is
-/// of second order.
-const OUTSIDE: f64 = 0.25;
 /// Places in the bracket, relative to its length, from which its crossings are sought, one after another.
 const FROM: [f64; 3] = [0.5, 0.2, 0.8];
 /// Newton iterations.
 const MOST_ITERATIONS: usize = 12;
-/// Correction (dimensionless) at which the iteration has converged: the next would be of the order of its square.
-const CONVERGED: f64 = 1e-9;
-/// The same where corrections no longer decrease; the residual decides then.
-const STALLED: f64 = 1e-6;
-/// Test functions up to this are zero: the eigenvalues vanish together. Corresponds to `TOGETHER` for dense matrices.
-const ZERO: f64 = 1e-10;
-/// Largest distance of the point from the interpolant of the path, relative to the step: the interpolation error is of
-/// fourth order in the step.
-const BESIDE_PATH: f64 = 2e-2;
-/// Cosine of the largest angle between the direction at the point and that of the interpolant, which it has to
-/// continue.
-const CONTINUES: f64 = 0.99;
-/// Distance from the point at which eigenvalues are counted, relative to the step.
-const BESIDE_POINT: f64 = 1e-4;
 /// Most brackets in which the first of several crossings is sought.
 const MOST_BRACKETS: usize = 6;
 
@@ -129,7 +111,7 @@ impl BorderedNewton<'_, '_> {
             let mut from = 0;
             while let Some(first) = expected.get(from) {
                 // Crossings close to the first may coincide with it.
-                let near = |other: &&Expected| other.place - first.place <= CLOSE * width;
+                let near = |other: &&Expected| other.place - first.place <= CLUSTER_WIDTH * width;
                 let close = expected[from..].iter().take_while(near).count();
                 let located = self.crossing(&expected[from..from + close], before, change);
                 if located.is_some() {
@@ -146,8 +128,12 @@ impl BorderedNewton<'_, '_> {
         let (state, rate) = between(&self.left, &self.right, place);
         let (system, width) = (self.system, self.right.place - self.left.place);
         let iterate = system.iterate(state.clone());
-        let Some(SystemFactorisation::Sparse(factors)) = system.bordered(&iterate, &unit(&rate)) else { return None };
-        let at = |state: &State| system.assemble_sparse(&system.iterate(state.clone()), Kind::Rates);
+        let Some(SystemFactorisation::Sparse(factors)) =
+            factorisation::factorise_bordered(system, &iterate, &unit(&rate))
+        else {
+            return None;
+        };
+        let at = |state: &State| matrix::assemble_sparse(system, &system.iterate(state.clone()), Kind::Rates);
         let change = at(&self.right.state)?.minus(&at(&self.left.state)?, 1.0 / width);
         let size = system.size();
         let moving = system.loading.structure.unknowns() + 1;
@@ -182,19 +168,20 @@ impl BorderedNewton<'_, '_> {
         let values = ritz.complex_eigenvalues();
         let mut places: Vec<(f64, f64)> = values
             .iter()
-            .filter(|value| value.re != 0.0 && value.im.abs() <= REAL * value.re.abs())
+            .filter(|value| value.re != 0.0 && value.im.abs() <= REAL_EIGENVALUE_TOLERANCE * value.re.abs())
             .map(|value| (place + 1.0 / value.re, value.re))
             .filter(|(found, _)| {
-                *found >= self.left.place - OUTSIDE * width && *found <= self.right.place + OUTSIDE * width
+                *found >= self.left.place - BRACKET_MARGIN * width
+                    && *found <= self.right.place + BRACKET_MARGIN * width
             })
             .collect();
         places.sort_by(|a, b| a.0.total_cmp(&b.0));
         let rate_of = |weights: DVector<f64>| {
             let values = &vectors * weights;
-            system.rate_at(&iterate, &values, Kind::Rates).normalised()
+            rate_recovery::rate_at(system, &iterate, &values, Kind::Rates).normalised()
         };
         let mut expected = Vec::new();
-        for close in places.chunk_by(|a, b| b.0 - a.0 <= CLOSE * width) {
+        for close in places.chunk_by(|a, b| b.0 - a.0 <= CLUSTER_WIDTH * width) {
             // The invariant subspace of these eigenvalues.
             let product = close.iter().fold(DMatrix::identity(block, block), |product, (_, value)| {
                 let scaled = &ritz / *value - DMatrix::identity(block, block);
@@ -215,7 +202,7 @@ impl BorderedNewton<'_, '_> {
         let motions: Vec<Rate> = expected.iter().flat_map(|expected| expected.motions.iter().cloned()).collect();
         let (state, rate) = between(&self.left, &self.right, first.place);
         let mut singular = self.singular(state, &unit(&rate), motions)?;
-        if singular.bordering.left.len() > 1 && singular.rest.amax() > ZERO {
+        if singular.bordering.left.len() > 1 && singular.rest.amax() > TEST_FUNCTION_TOLERANCE {
             // The crossings are close to each other, but distinct.
             let (state, rate, motion) = singular.first_apart(self.start.state)?;
             singular = self.singular(state, &rate, vec![motion])?;
@@ -249,8 +236,8 @@ impl BorderedNewton<'_, '_> {
         let mut least = f64::INFINITY;
         for _ in 0..MOST_ITERATIONS {
             let mut iterate = self.system.iterate(state);
-            self.system.make_consistent(&mut iterate);
-            self.system.residual(&iterate, &mut values, &mut force);
+            residual::make_consistent(self.system, &mut iterate);
+            residual::write_residual(self.system, &iterate, &mut values, &mut force);
             let bordering = Bordering::new(self.system, iterate.state.clone(), &rows, &columns)?;
             let across = bordering.solve(&values)?;
             let curvatures: Option<Vec<DMatrix<f64>>> =
@@ -268,19 +255,19 @@ impl BorderedNewton<'_, '_> {
             for (weight, right) in weights.iter().zip(&bordering.right) {
                 correction.axpy(-weight, right, 1.0);
             }
-            let size = self.system.length_of(&correction);
+            let size = rate_recovery::length_of(self.system, &correction);
             if !(size.is_finite() && size <= reach) {
                 return None;
             }
-            state = self.system.corrected_by(iterate, &correction).state;
-            if state.distance(self.start.state) <= AT_START {
+            state = rate_recovery::corrected_by(self.system, iterate, &correction).state;
+            if state.distance(self.start.state) <= START_DISTANCE {
                 return None;
             }
             let stalled = size > 0.5 * least;
             // A single test function is zero after each linearised correction; its value before the correction shows
             // convergence.
-            let is_zero = || columns.len() > 1 || bordering.tests.amax() <= ZERO;
-            if size <= CONVERGED || (stalled && size <= STALLED && is_zero()) {
+            let is_zero = || columns.len() > 1 || bordering.tests.amax() <= TEST_FUNCTION_TOLERANCE;
+            if size <= BORDERED_CORRECTION || (stalled && size <= STALLED_CORRECTION && is_zero()) {
                 return Some(Singular { bordering, state, curvatures, rest: tests });
             }
             if stalled && least.is_finite() && size > 4.0 * least {
@@ -296,11 +283,11 @@ impl BorderedNewton<'_, '_> {
     fn located(&self, singular: &Singular<'_>, before: Signature, change: SignatureChange) -> Option<Located> {
         let BorderedNewton { start, system, .. } = self;
         let place = singular.state.distance(start.state);
-        if place <= AT_START || place > self.right.place {
+        if place <= START_DISTANCE || place > self.right.place {
             return None;
         }
         let (near, rate) = between(&self.left, &self.right, place);
-        if near.distance(&singular.state) > BESIDE_PATH * self.right.place {
+        if near.distance(&singular.state) > DISTANCE_FROM_PATH * self.right.place {
             return None;
         }
         let rate = singular.continued(&unit(&rate))?;
@@ -330,8 +317,8 @@ impl BorderedNewton<'_, '_> {
     /// Whether an even number of other crossings lies before this one.
     fn is_first_by_sign(&self, located: &Located, before: Signature) -> bool {
         let Reached { corrected, rate, .. } = &*located.point;
-        let state = corrected.state.advanced(rate, -BESIDE_POINT * self.right.place);
-        let factors = self.system.bordered(&self.system.iterate(state), rate);
+        let state = corrected.state.advanced(rate, -COUNTING_OFFSET * self.right.place);
+        let factors = factorisation::factorise_bordered(self.system, &self.system.iterate(state), rate);
         factors.is_some_and(|factors| factors.determinant_sign() == before.determinant)
     }
 
@@ -343,7 +330,7 @@ impl BorderedNewton<'_, '_> {
 
     /// The number of negative eigenvalues just past a point (`way` 1) or just before it (`way` -1).
     fn counted(&self, point: &State, rate: &Rate, way: f64, signature: Signature) -> Option<usize> {
-        let state = point.advanced(rate, way * BESIDE_POINT * self.right.place);
+        let state = point.advanced(rate, way * COUNTING_OFFSET * self.right.place);
         let StepStart { loading, modes, state: start, .. } = *self.start;
         let mut work = Work::default();
         Signature::with_determinant(loading, modes, start, &state, signature.determinant, &mut work)?.negative
@@ -383,7 +370,7 @@ impl Singular<'_> {
         rate.scale(weights[0]);
         rates[1..].iter().zip(weights.iter().skip(1)).for_each(|(other, weight)| rate.add(other, *weight));
         let rate = rate.normalised()?;
-        (rate.product(along) >= CONTINUES).then_some(rate)
+        (rate.product(along) >= CONTINUATION_COSINE).then_some(rate)
     }
 
     /// The first along the path of crossings that are close to each other, but distinct, with its motion.
@@ -395,10 +382,12 @@ impl Singular<'_> {
         let slopes = -self.curvatures[0].columns(1, corank).into_owned();
         let by_place = -(slopes.lu().solve(&tests)?);
         let values = by_place.complex_eigenvalues();
-        let is_real = |value: &&Complex<f64>| value.im.abs() <= REAL * value.re.abs().max(ZERO);
+        let is_real = |value: &&Complex<f64>| {
+            value.im.abs() <= REAL_EIGENVALUE_TOLERANCE * value.re.abs().max(TEST_FUNCTION_TOLERANCE)
+        };
         let is_ahead = |place: &f64| {
             let chord = start.chord(&self.state.advanced(&along, *place));
-            chord.product(&along) > AT_START
+            chord.product(&along) > START_DISTANCE
         };
         let places = values.iter().filter(is_real).map(|value| value.re).filter(is_ahead);
         let place = places.min_by(f64::total_cmp)?;
@@ -429,7 +418,7 @@ fn weights(tests: &DMatrix<f64>, curvatures: &[DMatrix<f64>]) -> Option<DVector<
     if !(scale > 0.0 && scale.is_finite()) {
         return None;
     }
-    (matrix / scale).svd(true, true).solve(&(right / scale), ZERO).ok()
+    (matrix / scale).svd(true, true).solve(&(right / scale), TEST_FUNCTION_TOLERANCE).ok()
 }
 
 /// Orthonormalises columns over their first rows; a column in the span of the others becomes zero.
@@ -444,7 +433,7 @@ fn orthonormal_columns(mut vectors: DMatrix<f64>, rows: usize) -> DMatrix<f64> {
             }
         }
         let size = vectors.column(index).rows(0, rows).norm();
-        if size > AMONG_OTHERS * before && size.is_finite() {
+        if size > ORTHOGONAL_REMAINDER * before && size.is_finite() {
             vectors.column_mut(index).unscale_mut(size);
         } else {
             vectors.column_mut(index).fill(0.0);

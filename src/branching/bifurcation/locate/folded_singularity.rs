@@ -14,24 +14,18 @@
 //! SIAM 2000, chapter 3). With several tracks such points form a set; the nearest point is taken.
 
 use crate::algebra::{Factorisation, nearest_null_space, null_space_as_scaled};
-use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role};
-use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
+use crate::branching::bifurcation::locate::tolerances::{
+    ACCEPTED_VIOLATION, DIFFERENCE_STEP, FOLDED_CORRECTION, SEARCH_REACH, STATE_RANK_TOLERANCE,
+};
+use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, matrix, rate_recovery, residual};
+use crate::step::corrector::newton;
+use crate::step::corrector::tolerances::ACCEPTED_RESIDUAL;
 use crate::step::event_functions::{self, Watch};
 use crate::step::segment::{Reached, StepStart};
 use nalgebra::{DMatrix, DVector};
 
-/// Difference step (dimensionless) for the test functions' derivatives.
-const DIFFERENCE: f64 = 1e-5;
 /// Newton iterations.
 const MOST_ITERATIONS: usize = 20;
-/// Correction (dimensionless) below which the iterations have converged.
-const CONVERGED: f64 = 1e-10;
-/// Largest distance of the point from the start of the step, relative to the step.
-const NEAR: f64 = 2.0;
-/// Pivots of the state equations up to this, relative, are zero.
-const SINGULAR: f64 = 1e-8;
-/// Largest violation of an inequality that is accepted.
-const VIOLATED: f64 = 1e-10;
 
 /// The point near a step at which the direction is indeterminate, if there is one.
 pub fn locate(start: &StepStart<'_>, reached: &Reached) -> Option<Box<Reached>> {
@@ -44,10 +38,10 @@ pub fn locate(start: &StepStart<'_>, reached: &Reached) -> Option<Box<Reached>> 
         .map(|(contact, _)| system.row_of(contact) + 1)
         .collect();
     let search = FoldedSingularitySearch { system, tracks };
-    let iterate = search.found(search.system.iterate_of(&reached.corrected), NEAR * reached.step)?;
+    let iterate = search.found(search.system.iterate_of(&reached.corrected), SEARCH_REACH * reached.step)?;
     let corrected = newton::judged_as_state(&search.system, iterate, &search.tracks, start.force_scale);
     let step = corrected.state.distance(start.state);
-    if corrected.residual > ACCEPTED_RESIDUAL || step > NEAR * reached.step || step <= 0.0 {
+    if corrected.residual > ACCEPTED_RESIDUAL || step > SEARCH_REACH * reached.step || step <= 0.0 {
         return None;
     }
     let mut rate = start.state.chord(&corrected.state);
@@ -55,7 +49,7 @@ pub fn locate(start: &StepStart<'_>, reached: &Reached) -> Option<Box<Reached>> 
     // The node has reached the point in continued slip, without another event.
     let holds = |watch: &Watch| {
         let value = watch.value(start.loading, start.modes, &corrected.state, &rate);
-        value >= -VIOLATED * watch.scale(start.loading, &corrected.state, start.force_scale)
+        value >= -ACCEPTED_VIOLATION * watch.scale(start.loading, &corrected.state, start.force_scale)
     };
     if !event_functions::of_mode(start.loading, start.modes, start.state, start.rate).iter().all(holds) {
         return None;
@@ -84,9 +78,12 @@ impl FoldedSingularitySearch<'_> {
             for (column, way) in ways.column_iter().enumerate() {
                 let moved = |by: f64| {
                     let values = way * -by;
-                    self.tests(&self.system.corrected_by(iterate.clone(), &values), &psi, &borders)
+                    self.tests(&rate_recovery::corrected_by(&self.system, iterate.clone(), &values), &psi, &borders)
                 };
-                slopes.set_column(column, &((moved(DIFFERENCE)? - moved(-DIFFERENCE)?) / (2.0 * DIFFERENCE)));
+                slopes.set_column(
+                    column,
+                    &((moved(DIFFERENCE_STEP)? - moved(-DIFFERENCE_STEP)?) / (2.0 * DIFFERENCE_STEP)),
+                );
             }
             let weights = slopes.svd(true, true).solve(&here, f64::EPSILON).ok()?;
             let correction = &ways * weights;
@@ -94,13 +91,13 @@ impl FoldedSingularitySearch<'_> {
             if !size.is_finite() || size > reach.max(0.1) {
                 return None;
             }
-            iterate = self.projected(self.system.corrected_by(iterate, &correction))?;
+            iterate = self.projected(rate_recovery::corrected_by(&self.system, iterate, &correction))?;
             if iterate.state.distance(&origin) > 2.0 * reach {
                 return None;
             }
-            if size <= CONVERGED && size >= 0.25 * smallest || size <= 1e-3 * CONVERGED {
+            if size <= FOLDED_CORRECTION && size >= 0.25 * smallest || size <= 1e-3 * FOLDED_CORRECTION {
                 let (states, _) = self.equations(&iterate)?;
-                let regular = null_space_as_scaled(states, SINGULAR)?.ncols() == self.tracks.len() + 1;
+                let regular = null_space_as_scaled(states, STATE_RANK_TOLERANCE)?.ncols() == self.tracks.len() + 1;
                 return regular.then_some(iterate);
             }
             smallest = smallest.min(size);
@@ -113,9 +110,9 @@ impl FoldedSingularitySearch<'_> {
         let last = self.system.size() - 1;
         let mut values = DVector::zeros(self.system.size());
         let mut force = vec![0.0; self.system.loading.structure.freedoms()];
-        self.system.residual(iterate, &mut values, &mut force);
+        residual::write_residual(&self.system, iterate, &mut values, &mut force);
         let rows: Vec<usize> = (0..last).filter(|row| !self.tracks.contains(row)).collect();
-        let mut matrix = self.system.assemble(iterate, Kind::Increment).select_rows(&rows);
+        let mut matrix = matrix::assemble_dense(&self.system, iterate, Kind::Increment).select_rows(&rows);
         let mut values = values.select_rows(&rows);
         for (mut row, value) in matrix.row_iter_mut().zip(values.iter_mut()) {
             let size = row.amax();
@@ -130,7 +127,7 @@ impl FoldedSingularitySearch<'_> {
 
     /// The state closest to the given one that satisfies the equations.
     fn projected(&self, mut iterate: Iterate) -> Option<Iterate> {
-        self.system.make_consistent(&mut iterate);
+        residual::make_consistent(&self.system, &mut iterate);
         let mut least = f64::INFINITY;
         for _ in 0..MOST_ITERATIONS {
             let (matrix, values) = self.equations(&iterate)?;
@@ -143,14 +140,15 @@ impl FoldedSingularitySearch<'_> {
             }
             least = least.min(size);
             let correction = matrix.svd(true, true).solve(&values, f64::EPSILON).ok()?;
-            iterate = self.system.corrected_by(iterate, &correction);
+            iterate = rate_recovery::corrected_by(&self.system, iterate, &correction);
         }
         None
     }
 
     /// The rate equations, rows of unit size.
     fn rates(&self, iterate: &Iterate) -> Option<DMatrix<f64>> {
-        let mut matrix = self.system.assemble(iterate, Kind::Rates).rows(0, self.system.size() - 1).into_owned();
+        let mut matrix =
+            matrix::assemble_dense(&self.system, iterate, Kind::Rates).rows(0, self.system.size() - 1).into_owned();
         for mut row in matrix.row_iter_mut() {
             let size = row.amax();
             if !(size.is_finite() && size > 0.0) {

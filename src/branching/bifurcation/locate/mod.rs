@@ -11,18 +11,22 @@
 
 pub(crate) mod bordered_newton;
 pub(crate) mod folded_singularity;
+pub(crate) mod tolerances;
 
 use crate::algebra::scalar_root::find_root;
 use crate::algebra::{Determinant, null_space_as_scaled};
-use crate::branching::bifurcation::singularity::null_vectors::{NullVectors, SINGULAR};
+use crate::branching::bifurcation::locate::tolerances::{COINCIDENT_EIGENVALUES, CONVERGED_RESIDUAL, START_DISTANCE};
+use crate::branching::bifurcation::singularity::null_vectors::NullVectors;
 use crate::branching::bifurcation::singularity::test_functions::{
     Signature, SignatureChange, bordered_determinant, counted_tangent,
 };
+use crate::branching::bifurcation::singularity::tolerances::SINGULAR_PIVOT;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::scaled_rows::scaled_rows;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
+use crate::step::corrector::newton;
+use crate::step::corrector::tolerances::ACCEPTED_RESIDUAL;
 use crate::step::interpolation::{PlacedPoint, between, placed, unit};
 use crate::step::segment::{Reached, StepStart};
 use std::sync::Arc;
@@ -45,15 +49,6 @@ pub struct Crossing {
 pub(crate) const WIDTHS: [f64; 4] = [2e-2, 4e-3, 1e-3, 2e-4];
 /// Places in a bracket, relative to its length, from which the search may begin.
 const AHEAD: [f64; 4] = [0.0, 1e-4, 1e-3, 1e-2];
-/// Residual below which closer regular points bring no improvement.
-const GOOD: f64 = 2e-15;
-
-/// Eigenvalues this small, relative to the largest, at the first crossing count as crossing together with the first:
-/// the branches of closer crossings cannot be distinguished.
-const TOGETHER: f64 = 1e-10;
-
-/// A crossing no farther than this from the start of the step (dimensionless) is the start itself.
-const AT_START: f64 = 2e-9;
 
 /// The end of a step: a point, its crossing if it is a smooth bifurcation, and the signature just past it where known.
 pub(crate) type LocatedEnd = (Box<Reached>, Option<Crossing>, Option<Signature>);
@@ -146,7 +141,7 @@ fn find(
         }
         previous = Some(corrected.state.clone());
         let (matrix, _) = scaled_rows(&system, start.loading, &corrected.state);
-        let null = null_space_as_scaled(matrix, SINGULAR)?;
+        let null = null_space_as_scaled(matrix, SINGULAR_PIVOT)?;
         if null.ncols() < 2 || best.as_ref().is_some_and(|(least, ..)| *least <= residual) {
             continue;
         }
@@ -162,13 +157,13 @@ fn find(
         let mut point = Reached::new(corrected, rate, step, error);
         point.drift = start.drift.cloned();
         best = Some((residual, Located { point, crossing, between: Some([left.clone(), right.clone()]) }));
-        if residual <= GOOD {
+        if residual <= CONVERGED_RESIDUAL {
             break;
         }
     }
     let (residual, located) = best?;
     // With sparse matrices a singular start may appear regular.
-    let is_start = start.loading.structure.layout().is_some() && located.point.step <= AT_START;
+    let is_start = start.loading.structure.layout().is_some() && located.point.step <= START_DISTANCE;
     (residual <= ACCEPTED_RESIDUAL && !is_start).then_some(located)
 }
 
@@ -210,7 +205,7 @@ fn together(values: &[f64], change: SignatureChange) -> Option<usize> {
     let crossing: Vec<f64> =
         if net > 0 { values.get(before..)?.to_vec() } else { values.get(..before)?.iter().rev().copied().collect() };
     let first = *crossing.first()?;
-    Some(crossing.iter().take_while(|value| (*value - first).abs() <= TOGETHER * largest).count())
+    Some(crossing.iter().take_while(|value| (*value - first).abs() <= COINCIDENT_EIGENVALUES * largest).count())
 }
 
 fn root_between(left: &PlacedPoint, right: &PlacedPoint, value: &impl Fn(&State, &Rate) -> Option<f64>) -> Option<f64> {

@@ -15,17 +15,12 @@
 use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::{Bordered, SparseFactorisation};
 use crate::branching::bifurcation::singularity::null_vectors::NullVectors;
-use crate::mechanics::equations::{Kind, ModeSystem};
+use crate::branching::bifurcation::singularity::tolerances::{
+    EXTRAPOLATED_DIFFERENCE_STEP, SYMMETRY_RESIDUAL, SYMMETRY_TEST_FACTOR,
+};
+use crate::mechanics::equations::{Kind, ModeSystem, factorisation, matrix, rate_recovery};
 use crate::mechanics::problem::state::{Rate, State};
 use nalgebra::{DMatrix, DVector};
-
-/// Difference step (dimensionless) for second derivatives of states. The error of the formula is of fourth order.
-pub(crate) const DIFFERENCE: f64 = 1e-3;
-
-/// Residual of left vectors found by symmetry, relative to the largest stiffness, up to which it is round-off.
-const SYMMETRIC: f64 = 1e-12;
-/// The same near a singular point, relative to the test functions.
-const BEYOND_TESTS: f64 = 10.0;
 
 /// The bordered equations at a state; see the module.
 pub(crate) struct Bordering<'a> {
@@ -45,16 +40,16 @@ impl<'a> Bordering<'a> {
     /// the unknown displacements. `None` with dense matrices, and where the bordered system is singular.
     pub fn new(system: &'a ModeSystem<'a>, state: State, rows: &[Rate], columns: &[DVector<f64>]) -> Option<Self> {
         let (size, corank) = (system.size(), columns.len());
-        let mut matrix = system.assemble_sparse(&system.iterate(state.clone()), Kind::Rates)?.widened(corank);
+        let mut matrix = matrix::assemble_sparse(system, &system.iterate(state.clone()), Kind::Rates)?.widened(corank);
         let stiffness = matrix.largest_within();
         for (index, rate) in rows.iter().enumerate() {
-            system.border_row(size - 1 + index, &mut matrix, |freedom| rate.displacement[freedom], rate.load);
+            matrix::border_row(system, size - 1 + index, &mut matrix, |freedom| rate.displacement[freedom], rate.load);
         }
         for (index, column) in columns.iter().enumerate() {
             column.iter().enumerate().for_each(|(row, value)| matrix.add(row, size + index, stiffness * value));
         }
         let transposed = matrix.transposed();
-        let factors = SparseFactorisation::new(matrix, system.holdings())?;
+        let factors = SparseFactorisation::new(matrix, factorisation::holdings(system))?;
         let unit = |place: usize| {
             let mut values = DVector::zeros(size + corank);
             values[place] = 1.0;
@@ -71,11 +66,11 @@ impl<'a> Bordering<'a> {
             right.push(values.rows(0, size).into_owned());
         }
         let forces: Vec<DVector<f64>> = columns.iter().map(|column| column * stiffness).collect();
-        let left = by_symmetry(system, &right, &forces, &transposed, BEYOND_TESTS * tests.amax());
+        let left = by_symmetry(system, &right, &forces, &transposed, SYMMETRY_TEST_FACTOR * tests.amax());
         let left = match left {
             Some(left) => left,
             None => {
-                let transposed = SparseFactorisation::new(transposed, &system.holdings().transposed())?;
+                let transposed = SparseFactorisation::new(transposed, &factorisation::holdings(system).transposed())?;
                 let solved = (0..corank).map(|index| {
                     let mut values = unit(size + index);
                     transposed.solve(&mut values).then(|| values.rows(0, size - 1).into_owned())
@@ -131,7 +126,7 @@ impl<'a> Bordering<'a> {
     }
 
     pub fn rate(&self, values: &DVector<f64>) -> Rate {
-        self.system.rate_from(&self.state, values)
+        rate_recovery::rate_from(self.system, &self.state, values)
     }
 
     /// Solves for a right-hand side over the equations of the mode; returns the unknowns of the solution, which is
@@ -152,11 +147,11 @@ impl<'a> Bordering<'a> {
         let difference = |step: f64| {
             let at = |step: f64| {
                 let state = self.state.advanced(along, step);
-                self.system.assemble_sparse(&self.system.iterate(state), Kind::Rates)
+                matrix::assemble_sparse(self.system, &self.system.iterate(state), Kind::Rates)
             };
             Some(at(step)?.minus(&at(-step)?, 0.5 / step))
         };
-        let step = DIFFERENCE / size;
+        let step = EXTRAPOLATED_DIFFERENCE_STEP / size;
         // (4 D(h/2) - D(h)) / 3, as 4/3 (D(h/2) - D(h)/4).
         Some(difference(0.5 * step)?.minus(&difference(step)?.scaled(0.25), 4.0 / 3.0))
     }
@@ -200,7 +195,7 @@ fn by_symmetry(
         turned.iter().enumerate().for_each(|(l, turned)| sum.axpy(weights[(j, l)], turned, 1.0));
         let whole = sum.clone().resize_vertically(size + corank, 0.0);
         let rest = transposed.times(&whole).rows(0, size).amax();
-        let most = (SYMMETRIC + left_over) * stiffness * sum.rows(0, unknowns).amax();
+        let most = (SYMMETRY_RESIDUAL + left_over) * stiffness * sum.rows(0, unknowns).amax();
         if rest > most || rest.is_nan() {
             return None;
         }

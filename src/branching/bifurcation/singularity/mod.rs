@@ -9,3 +9,4 @@
 pub(crate) mod bordering;
 pub(crate) mod null_vectors;
 pub(crate) mod test_functions;
+pub(crate) mod tolerances;

@@ -10,6 +10,3 @@ pub struct NullVectors {
     /// Left null vectors over the equations without the last.
     pub left: Vec<DVector<f64>>,
 }
-
-/// Pivots of the singular equations up to this, relative, are zero.
-pub(crate) const SINGULAR: f64 = 1e-8;

@@ -22,15 +22,17 @@
 
 use crate::algebra::sparse::{Bordered, held_inertia};
 use crate::algebra::{Determinant, Inertia, SystemFactorisation, determinant, inertia, null_space};
+use crate::branching::bifurcation::singularity::tolerances::ZERO_PIVOT;
 use crate::mechanics::contact::{ContactPair, Mode};
-use crate::mechanics::equations::scaled_rows::{RANK, scaled_rows};
-use crate::mechanics::equations::{Kind, ModeSystem};
+use crate::mechanics::equations::scaled_rows::scaled_rows;
+use crate::mechanics::equations::tolerances::RANK_TOLERANCE;
+use crate::mechanics::equations::{Kind, ModeSystem, factorisation, matrix};
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::natural_residual::ZERO;
 use crate::mechanics::problem::state::{Rate, State};
+use crate::mechanics::problem::tolerances::CONTACT_TOLERANCE;
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::determinant_sign::UNCERTAIN;
 use crate::step::corrector::tangent;
+use crate::step::corrector::tolerances::UNCERTAIN_PIVOT_RATIO;
 use crate::step::event_functions::Watch;
 use crate::step::segment::{Reached, StepStart};
 use nalgebra::DMatrix;
@@ -57,9 +59,6 @@ pub enum SignatureChange {
     /// An odd number of real eigenvalues crossed zero.
     Odd,
 }
-
-/// Pivots below this fraction of the largest entry count as zero.
-const ZERO_PIVOT: f64 = 1e-13;
 
 /// Parts of a step after which the signature of a singular start is evaluated.
 const FURTHER_ON: [f64; 3] = [1e-4, 1e-3, 1e-2];
@@ -129,7 +128,7 @@ fn count_sparse(
     if system.size() + 1 > 2 * unknowns {
         return Some(None);
     }
-    let matrix = system.assemble_sparse(&system.iterate(state.clone()), Kind::Rates)?;
+    let matrix = matrix::assemble_sparse(&system, &system.iterate(state.clone()), Kind::Rates)?;
     inertia_of_sparse(&system, &matrix, work).map(|inertia| Some(inertia.negative))
 }
 
@@ -143,7 +142,7 @@ pub fn negative_eigenvalues(
     work: &mut Work,
 ) -> Option<usize> {
     let system = ModeSystem::new(loading, modes, start);
-    let counted = match system.assemble_sparse(&system.iterate(state.clone()), Kind::Rates) {
+    let counted = match matrix::assemble_sparse(&system, &system.iterate(state.clone()), Kind::Rates) {
         Some(matrix) => inertia_of_sparse(&system, &matrix, work),
         None => inertia(reduced_tangent(&system, loading, state)?, ZERO_PIVOT),
     };
@@ -152,18 +151,18 @@ pub fn negative_eigenvalues(
 
 fn inertia_of_sparse(system: &ModeSystem<'_>, matrix: &Bordered, work: &mut Work) -> Option<Inertia> {
     work.factorisations += 1;
-    held_inertia(matrix, system.holdings(), ZERO_PIVOT)
+    held_inertia(matrix, factorisation::holdings(system), ZERO_PIVOT)
 }
 
 fn reduced_tangent(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State) -> Option<DMatrix<f64>> {
     let unknowns = loading.structure.unknowns();
     let constraints = system.size() - 1 - unknowns;
-    let matrix = system.matrix(state);
+    let matrix = matrix::rate_matrix(system, state);
     let tangent = matrix.view((0, 0), (unknowns, unknowns));
     if constraints == 0 {
         return Some(tangent.into_owned());
     }
-    let basis = null_space(&matrix.view((unknowns, 0), (constraints, unknowns)).into_owned(), RANK)?;
+    let basis = null_space(&matrix.view((unknowns, 0), (constraints, unknowns)).into_owned(), RANK_TOLERANCE)?;
     if basis.ncols() == 0 {
         return Some(DMatrix::zeros(0, 0));
     }
@@ -178,8 +177,9 @@ pub fn loosened(start: &StepStart<'_>, reached: &Reached) -> Option<Vec<Mode>> {
     let touches = |state: &State, contact: usize| {
         let force_scale = start.force_scale.max(reached.corrected.force_scale);
         let reaction = state.reactions[contact].size();
-        let is_zero = reaction == 0.0 || start.loading.is_no_force(contact, state, reaction, ZERO, force_scale);
-        is_zero && start.loading.gap(contact, state) <= ZERO
+        let is_zero =
+            reaction == 0.0 || start.loading.is_no_force(contact, state, reaction, CONTACT_TOLERANCE, force_scale);
+        is_zero && start.loading.gap(contact, state) <= CONTACT_TOLERANCE
     };
     let grazes = |(contact, mode): (usize, &Mode)| {
         mode.is_active() && touches(start.state, contact) && touches(&reached.corrected.state, contact)
@@ -266,8 +266,8 @@ impl Signature {
         work.factorisations += 1;
         if loading.structure.layout().is_some() {
             let iterate = system.iterate(state.clone());
-            let bordered = system.bordered(&iterate, rate)?;
-            if bordered.pivot_ratio() <= UNCERTAIN {
+            let bordered = factorisation::factorise_bordered(&system, &iterate, rate)?;
+            if bordered.pivot_ratio() <= UNCERTAIN_PIVOT_RATIO {
                 return None;
             }
             let sign = bordered.determinant_sign();
@@ -275,7 +275,7 @@ impl Signature {
             return Self::with_determinant(loading, modes, state, state, sign, work);
         }
         let determinant = bordered_determinant(&system, loading, state, rate)?;
-        if determinant.pivot_ratio <= UNCERTAIN {
+        if determinant.pivot_ratio <= UNCERTAIN_PIVOT_RATIO {
             return None;
         }
         Self::with_determinant(loading, modes, state, state, determinant.sign, work)
@@ -291,7 +291,7 @@ pub fn bordered_determinant(
 ) -> Option<Determinant> {
     let (matrix, _) = scaled_rows(system, loading, state);
     let mut matrix = matrix.insert_row(system.size() - 1, 0.0);
-    system.border(&mut matrix, rate);
+    matrix::border(system, &mut matrix, rate);
     determinant(matrix)
 }
 
@@ -308,7 +308,7 @@ pub fn sign_at_end(start: &StepStart<'_>, reached: &Reached, work: &mut Work) ->
         work.factorisations += 1;
         let system = ModeSystem::new(loading, &reached.corrected.modes, state);
         let determinant = bordered_determinant(&system, loading, state, &reached.rate)?;
-        (determinant.pivot_ratio > UNCERTAIN).then_some(determinant.sign)
+        (determinant.pivot_ratio > UNCERTAIN_PIVOT_RATIO).then_some(determinant.sign)
     })
 }
 
@@ -347,10 +347,10 @@ pub fn compare(
         let system = ModeSystem::new(start.loading, start.modes, start.state);
         let structure = start.loading.structure;
         let motion = |unknown: usize| reached.rate.displacement[structure.freedom_of[unknown]];
-        let work: f64 = match system.assemble_sparse(&system.iterate(state.clone()), Kind::Rates) {
+        let work: f64 = match matrix::assemble_sparse(&system, &system.iterate(state.clone()), Kind::Rates) {
             Some(matrix) => matrix.right_column(0).iter().map(|(unknown, value)| -value * motion(*unknown)).sum(),
             None => {
-                let matrix = system.matrix(state);
+                let matrix = matrix::rate_matrix(&system, state);
                 let column = matrix.column(structure.unknowns());
                 (0..structure.unknowns()).map(|unknown| -column[unknown] * motion(unknown)).sum()
             }

@@ -2,7 +2,10 @@
 
 use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::{Bordered, Holdings, SparseFactorisation};
-use crate::branching::uniqueness::all_slipping::{DEFINITE, MARGIN, RESTING, ReducedUnknowns};
+use crate::branching::uniqueness::all_slipping::ReducedUnknowns;
+use crate::branching::uniqueness::all_slipping::tolerances::{
+    DEFINITENESS_TOLERANCE, SMALLEST_LOAD_RATE, STRICT_MARGIN,
+};
 use crate::mechanics::problem::state::Rate;
 use nalgebra::DVector;
 
@@ -43,14 +46,14 @@ pub(super) fn stuck_among_many(reduced: &ReducedUnknowns<'_>, incoming: &Rate) -
     }
     let largest = load.amax();
     let own = power(&|unknown| columns[unknown], true);
-    if own.abs() <= MARGIN * largest {
+    if own.abs() <= STRICT_MARGIN * largest {
         return None;
     }
     if others.iter().all(|other| load[place_of[*other]] == 0.0) {
         return reduced.stuck_rate(&others, &response);
     }
     let of_stuck = power(&|unknown| values[place_of[unknown]], false);
-    if of_stuck.abs() <= MARGIN * largest * response.norm() {
+    if of_stuck.abs() <= STRICT_MARGIN * largest * response.norm() {
         return None;
     }
     reduced.stuck_rate(&others, &response).filter(|stuck| stuck.load * own * of_stuck < 0.0)
@@ -106,9 +109,9 @@ fn equations_of_many(reduced: &ReducedUnknowns<'_>) -> Option<EquationsOfMany> {
 /// neither.
 fn is_by_power(mut symmetric: Bordered, load: &DVector<f64>, incoming: &Rate) -> Option<bool> {
     let size = load.len();
-    let inertia = symmetric.inertia(DEFINITE)?;
+    let inertia = symmetric.inertia(DEFINITENESS_TOLERANCE)?;
     match (inertia.negative, inertia.zero) {
-        (0, 0) if incoming.load.abs() > RESTING => Some(false),
+        (0, 0) if incoming.load.abs() > SMALLEST_LOAD_RATE => Some(false),
         (1, 0) => {
             for (unknown, load) in load.iter().enumerate() {
                 symmetric.add(unknown, size, *load);
@@ -116,7 +119,7 @@ fn is_by_power(mut symmetric: Bordered, load: &DVector<f64>, incoming: &Rate) ->
             }
             // The symmetric part has one negative eigenvalue, not two.
             let bordered = SparseFactorisation::new(symmetric, &Holdings::default())?;
-            if bordered.determinant_sign() > 0.0 || bordered.pivot_ratio() <= DEFINITE {
+            if bordered.determinant_sign() > 0.0 || bordered.pivot_ratio() <= DEFINITENESS_TOLERANCE {
                 return None;
             }
             Some(true)

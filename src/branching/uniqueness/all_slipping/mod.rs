@@ -25,9 +25,11 @@ pub(crate) mod many;
 pub(crate) mod static_condensation;
 #[cfg(test)]
 mod tests;
+pub(crate) mod tolerances;
 
 use crate::branching::directions::candidate::is_mechanism;
 use crate::branching::directions::choice::{DirectionChoice, Rules, mark_retrace, potential_rate, sign_of};
+use crate::branching::uniqueness::all_slipping::tolerances::{SMALLEST_LOAD_RATE, STRICT_MARGIN};
 use crate::complementarity::rates::p_matrix::is_definite;
 use crate::complementarity::rates::parametric_lcp::slip_or_stick;
 use crate::mechanics::contact::vector::{Vector, dot};
@@ -35,19 +37,13 @@ use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
-use crate::step::corrector::cached_factorisation::AtHand;
+use crate::step::corrector::cached_factorisation::CachedFactorisation;
 use nalgebra::{DMatrix, DVector};
 use smallvec::{SmallVec, smallvec};
 use static_condensation::CondensedResponse;
 
-/// Rates above this (of unit arc length; forces relative to the largest) are nonzero beyond doubt.
-const MARGIN: f64 = 1e-7;
-/// Eigenvalues up to this, relative, count as zero.
-const DEFINITE: f64 = 1e-9;
 /// Largest number of unknowns for which matrices are dense: they have few entries, and only the profile is factorised.
 const MOST_DENSE: usize = 40;
-/// Load rates below this may be zero.
-const RESTING: f64 = 1e-8;
 
 /// A contribution of an unknown to the motion of a degree of freedom, and the weight of the degree of freedom's
 /// equation in the unknown's equation.
@@ -110,7 +106,7 @@ impl<'a> Motions<'a> {
 }
 
 /// The direction that continues the path and the other direction, if there are no more.
-pub fn directions_going_on(
+pub fn all_slipping_directions(
     loading: Loading<'_>,
     state: &State,
     standings: &[Standing],
@@ -122,7 +118,8 @@ pub fn directions_going_on(
         return None;
     }
     let reduced = ReducedUnknowns::new(loading, state, standings, modes)?;
-    let goes_on = |slip: &Slip| dot(&slip.direction, &loading.relative_rate(slip.contact, state, incoming)) > MARGIN;
+    let goes_on =
+        |slip: &Slip| dot(&slip.direction, &loading.relative_rate(slip.contact, state, incoming)) > STRICT_MARGIN;
     if reduced.slips.is_empty() || !reduced.slips.iter().all(goes_on) {
         return None;
     }
@@ -139,7 +136,7 @@ pub fn directions_going_on(
         })
         .sum();
     let choice = |rate: Rate, modes: Vec<Mode>, dissipation: f64| DirectionChoice {
-        at_hand: AtHand::default(),
+        cached: CachedFactorisation::default(),
         dissipation,
         potential_rate: potential_rate(loading, state, &rate, dissipation),
         load_sign: sign_of(rate.load),
@@ -301,7 +298,7 @@ impl<'a> ReducedUnknowns<'a> {
             // zero, as the stuck rate shows: continued slip with the load rate `-m b / q`, and `b = 0` with `q ṡ > 0`.
             return self.stuck_rate(&others, &response.load);
         }
-        if incoming.load.abs() > RESTING && is_definite(matrix.clone()) {
+        if incoming.load.abs() > SMALLEST_LOAD_RATE && is_definite(matrix.clone()) {
             return self.stuck_rate(&others, &response.load).filter(|stuck| stuck.load * incoming.load < 0.0);
         }
         if !others.is_empty() {
@@ -341,15 +338,13 @@ impl<'a> ReducedUnknowns<'a> {
         let mut forces: SmallVec<[f64; 6]> = SmallVec::from_slice(&loading.pattern.forces);
         let forces = &mut forces[..];
         forces.iter_mut().for_each(|force| *force = -*force);
-        structure.each_stiffness(&self.state.displacement, &mut |row, column, value| {
-            forces[row] += value * displacement[column];
-        });
+        structure.add_stiffness_times(&self.state.displacement, &displacement, forces);
         let mut rate = Rate { displacement, load: 1.0, reactions: vec![Reaction::default(); loading.contacts.len()] };
         for (node, contact) in self.holder.iter().enumerate().filter_map(|(node, holder)| Some((node, (*holder)?))) {
             rate.reactions[contact] = loading.taken_by(contact, self.state, &structure.translation_at(node, forces));
         }
         let (size, largest) = (rate.size(), rate.largest_reaction());
-        if !size.is_finite() || size <= MARGIN * largest {
+        if !size.is_finite() || size <= STRICT_MARGIN * largest {
             return None;
         }
         // The rate at which a contact's force moves into its cone.
@@ -358,7 +353,7 @@ impl<'a> ReducedUnknowns<'a> {
             loading.contacts[slip.contact].friction.slack(reaction, &slip.direction)
         };
         let sense = 1.0_f64.copysign(self.slips.first().map_or(1.0, inward));
-        let least = MARGIN * largest.max(f64::MIN_POSITIVE);
+        let least = STRICT_MARGIN * largest.max(f64::MIN_POSITIVE);
         if !self.slips.iter().all(|slip| sense * inward(slip) > least) {
             return None;
         }

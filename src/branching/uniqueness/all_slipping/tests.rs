@@ -23,7 +23,8 @@ fn what_is_found_at_once_is_what_is_found_everywhere() {
                 let (Some(incoming), true) = (&here.rate, increment.index > 0) else { continue };
                 let standings = path.trace.standings(&here.state);
                 let (loading, rules) = (path.trace.loading(), path.trace.rules());
-                let Some(at_once) = directions_going_on(loading, &here.state, &standings, &here.modes, incoming, rules)
+                let Some(at_once) =
+                    all_slipping_directions(loading, &here.state, &standings, &here.modes, incoming, rules)
                 else {
                     continue;
                 };

@@ -20,6 +20,7 @@ pub(crate) mod pivoting;
 pub(crate) mod proof;
 #[cfg(test)]
 mod tests;
+pub(crate) mod tolerances;
 
 use crate::branching::directions::arrival_tangent::Incoming;
 use crate::branching::directions::candidate::FoundDirections;

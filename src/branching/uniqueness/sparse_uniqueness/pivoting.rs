@@ -1,24 +1,23 @@
-//! The direction for one sign of the load rate, or of the load's power, by block pivoting (M. M. Kostreva, Optimization
-//! 9 (1978) 13).
+//! The direction for one sign of the load rate, or of the load's power, by block pivoting over the modes of the contacts.
 
 use crate::algebra::SystemFactorisation;
 use crate::algebra::dense::assembly::Sink;
 use crate::branching::directions::arrival_tangent::Incoming;
-use crate::branching::directions::candidate::{Alternative, CandidateDirection, WEAK};
+use crate::branching::directions::candidate::{Alternative, CandidateDirection};
+use crate::branching::directions::tolerances::WEAK_MARGIN;
 use crate::branching::uniqueness::sparse_uniqueness::equations::{ChangingContact, Equations};
 use crate::branching::uniqueness::sparse_uniqueness::proof::DistinguishingQuantity;
-use crate::complementarity::rates::ray::IN_DOUBT;
+use crate::complementarity::rates::block_pivoting::{self, RoundResult, Rounds};
+use crate::complementarity::rates::tolerances::DOUBTFUL_RATE;
 use crate::mechanics::contact::vector::{Vector, dot, scaled};
 use crate::mechanics::contact::{Mode, Reaction, all_continue};
-use crate::mechanics::equations::{Kind, ModeSystem};
+use crate::mechanics::equations::{Kind, ModeSystem, factorisation, rate_recovery};
 use crate::mechanics::problem::node_forces::whole_rates;
 use crate::mechanics::problem::state::Rate;
-use crate::step::corrector::cached_factorisation::AtHand;
+use crate::step::corrector::cached_factorisation::CachedFactorisation;
 
-/// Rounds of block pivoting in which every violating contact changes, and subsequent rounds in which only the last one
-/// does (K. G. Murty's method, finite where there is one solution for each right-hand side).
-const ROUNDS: usize = 16;
-const ROUNDS_ONE_BY_ONE: usize = 48;
+/// Where the equations have one solution for each right-hand side, the second kind of rounds finds it.
+const ROUNDS: Rounds = Rounds { in_blocks: 16, one_by_one: 48 };
 
 /// A contact whose mode only a finite step can decide.
 pub(super) struct Doubt {
@@ -36,45 +35,57 @@ pub(super) fn solve(
     sign: f64,
     incoming: Option<Incoming<'_>>,
 ) -> Option<CandidateDirection> {
-    let mut modes = equations.held.clone();
+    let mut first = equations.held.clone();
     if incoming.is_some_and(|incoming| value_of(equations, control, incoming.rate) * sign > 0.0) {
         for one in &equations.changing {
-            modes[one.contact] = one.direction.map_or(modes[one.contact], |direction| Mode::Slip { direction });
+            first[one.contact] = one.direction.map_or(first[one.contact], |direction| Mode::Slip { direction });
         }
     }
-    for round in 0..ROUNDS + ROUNDS_ONE_BY_ONE {
-        let (mut rate, by) = match (control, incoming) {
-            (DistinguishingQuantity::Load, _) if modes == equations.held && may_rest(equations) => {
-                rest(equations, sign).map(|rate| (rate, None))
-            }
-            (_, Some(incoming)) if incoming.modes.is_some_and(|of| all_continue(of, &modes)) => {
-                Some((incoming.rate.clone(), None))
-            }
-            (DistinguishingQuantity::Power, Some(incoming)) => line(equations, &modes, Some(incoming.rate)),
-            _ => None,
-        }
-        .or_else(|| line(equations, &modes, None))?;
+    let examine = |modes: &Vec<Mode>| {
+        let (mut rate, by) = rate_in(equations, control, sign, incoming, modes)?;
         let value = value_of(equations, control, &rate);
-        if value.abs() <= WEAK * equations.largest_load() * rate.size() && control == DistinguishingQuantity::Power {
+        if value.abs() <= WEAK_MARGIN * equations.largest_load() * rate.size()
+            && control == DistinguishingQuantity::Power
+        {
             return None;
         }
         rate.scale(sign * value.signum());
-        let (next, doubts) = violations(equations, &modes, &rate);
-        match next {
-            None => {
-                let at_hand = by.map(|by| AtHand::of(equations.loading, by)).unwrap_or_default();
-                let candidate = candidate(equations, rate, modes, doubts);
-                // The modes of contacts in doubt are not those of the factorisation.
-                return Some(if candidate.weak { candidate } else { CandidateDirection { at_hand, ..candidate } });
-            }
-            Some(next) if round < ROUNDS => modes = next,
-            Some(next) => {
-                let last = (0..modes.len()).rev().find(|contact| next[*contact] != modes[*contact])?;
-                modes[last] = next[last];
-            }
+        let (changes, doubts) = violations(equations, modes, &rate);
+        if !changes.is_empty() {
+            return Some(RoundResult::Violated(changes));
         }
+        let cached = by.map(|by| CachedFactorisation::of(equations.loading, by)).unwrap_or_default();
+        let candidate = candidate(equations, rate, modes.clone(), doubts);
+        // The modes of contacts in doubt are not those of the factorisation.
+        Some(RoundResult::Solved(if candidate.weak { candidate } else { CandidateDirection { cached, ..candidate } }))
+    };
+    let change = |modes: &mut Vec<Mode>, changes: Vec<(usize, Mode)>| {
+        changes.into_iter().for_each(|(contact, mode)| modes[contact] = mode);
+        Some(())
+    };
+    block_pivoting::block_pivot(first, ROUNDS, examine, change)
+}
+
+/// The direction of some sign in these modes, and the factorisation with which it was found: along which nothing moves,
+/// or along which the path arrives, where these modes allow it, else by the equations.
+fn rate_in(
+    equations: &Equations<'_>,
+    control: DistinguishingQuantity,
+    sign: f64,
+    incoming: Option<Incoming<'_>>,
+    modes: &[Mode],
+) -> Option<(Rate, Option<SystemFactorisation>)> {
+    match (control, incoming) {
+        (DistinguishingQuantity::Load, _) if modes == equations.held && may_rest(equations) => {
+            rest(equations, sign).map(|rate| (rate, None))
+        }
+        (_, Some(incoming)) if incoming.modes.is_some_and(|of| all_continue(of, modes)) => {
+            Some((incoming.rate.clone(), None))
+        }
+        (DistinguishingQuantity::Power, Some(incoming)) => line(equations, modes, Some(incoming.rate)),
+        _ => None,
     }
-    None
+    .or_else(|| line(equations, modes, None))
 }
 
 /// The load on each column, and whether the column belongs to a contact on its cone.
@@ -91,16 +102,14 @@ fn may_rest(equations: &Equations<'_>) -> bool {
 
 /// The directions along which nothing moves and the load alone changes.
 pub(super) fn at_rest(equations: &Equations<'_>) -> Vec<CandidateDirection> {
-    let zero = WEAK * equations.largest_load();
+    let zero = WEAK_MARGIN * equations.largest_load();
     let rests = |sign: f64| {
         if !loads(equations).all(|(load, is_cone)| load.abs() <= zero || (is_cone && load * sign < 0.0)) {
             return None;
         }
         let rate = rest(equations, sign)?;
-        match violations(equations, &equations.held, &rate) {
-            (None, doubts) => Some(candidate(equations, rate, equations.held.clone(), doubts)),
-            (Some(_), _) => None,
-        }
+        let (changes, doubts) = violations(equations, &equations.held, &rate);
+        changes.is_empty().then(|| candidate(equations, rate, equations.held.clone(), doubts))
     };
     [1.0, -1.0].into_iter().filter_map(rests).collect()
 }
@@ -162,26 +171,28 @@ fn line(
     let iterate = system.iterate(equations.state.clone());
     let by_load = |matrix: &mut dyn Sink| matrix.add(system.size() - 1, equations.loading.structure.unknowns(), 1.0);
     let factorisation = match border {
-        Some(border) => system.bordered(&iterate, border)?,
-        None => system.factorise(&iterate, Kind::Rates, by_load)?,
+        Some(border) => factorisation::factorise_bordered(&system, &iterate, border)?,
+        None => factorisation::factorise(&system, &iterate, Kind::Rates, by_load)?,
     };
-    let rate = system.tangent_by(&factorisation, &iterate)?;
+    let rate = rate_recovery::tangent_by(&system, &factorisation, &iterate)?;
     Some((rate, Some(factorisation)))
 }
 
-/// The modes to try next, if a nonnegative quantity is negative; the contacts at which it is zero, exactly or nearly.
-fn violations(equations: &Equations<'_>, modes: &[Mode], rate: &Rate) -> (Option<Vec<Mode>>, Vec<Doubt>) {
-    let force = WEAK * rate.largest_reaction().max(f64::MIN_POSITIVE);
-    let (mut next, mut doubts) = (None, Vec::new());
+/// The contacts with a negative quantity among those that must not be, in their order, with the modes to try next; and
+/// the contacts at which the quantity is zero, exactly or nearly.
+fn violations(equations: &Equations<'_>, modes: &[Mode], rate: &Rate) -> (Vec<(usize, Mode)>, Vec<Doubt>) {
+    let force = WEAK_MARGIN * rate.largest_reaction().max(f64::MIN_POSITIVE);
+    let (mut changes, mut doubts) = (Vec::new(), Vec::new());
     for one in &equations.changing {
         let (margin, tolerance, other) = margin(equations, one, modes[one.contact], rate, force);
         if margin < -tolerance {
-            next.get_or_insert_with(|| modes.to_vec())[one.contact] = other;
-        } else if margin <= IN_DOUBT / WEAK * tolerance {
+            changes.push((one.contact, other));
+        } else if margin <= DOUBTFUL_RATE / WEAK_MARGIN * tolerance {
             doubts.push(Doubt { contact: one.contact, direction: one.direction, weak: margin <= tolerance });
         }
     }
-    (next, doubts)
+    changes.sort_unstable_by_key(|(contact, _)| *contact);
+    (changes, doubts)
 }
 
 fn speed(equations: &Equations<'_>, one: &ChangingContact, direction: &Vector, rate: &Rate) -> f64 {
@@ -191,7 +202,7 @@ fn speed(equations: &Equations<'_>, one: &ChangingContact, direction: &Vector, r
 /// For each contact that can change, whether the nonnegative quantity of its mode is positive beyond round-off.
 pub(super) fn strict(equations: &Equations<'_>, candidate: &CandidateDirection) -> Vec<bool> {
     let rate = &candidate.rate;
-    let force = WEAK * rate.largest_reaction().max(f64::MIN_POSITIVE);
+    let force = WEAK_MARGIN * rate.largest_reaction().max(f64::MIN_POSITIVE);
     let is_strict = |one: &ChangingContact| {
         let (margin, tolerance, _) = margin(equations, one, candidate.modes[one.contact], rate, force);
         margin > tolerance
@@ -203,7 +214,7 @@ pub(super) fn strict(equations: &Equations<'_>, candidate: &CandidateDirection) 
 /// it is negative.
 fn margin(equations: &Equations<'_>, one: &ChangingContact, mode: Mode, rate: &Rate, force: f64) -> (f64, f64, Mode) {
     let (reaction, data) = (&rate.reactions[one.contact], &equations.loading.contacts[one.contact]);
-    let tolerance = if matches!(mode, Mode::Stick) || data.tangents() == 0 { force } else { WEAK };
+    let tolerance = if matches!(mode, Mode::Stick) || data.tangents() == 0 { force } else { WEAK_MARGIN };
     let (margin, other) = match (mode, one.direction) {
         (Mode::Stick, Some(direction)) => {
             let left = data.friction.slack(reaction, &direction);
@@ -254,5 +265,5 @@ pub(super) fn candidate(
     });
     let dissipation = dissipation.sum();
     let forces = whole_rates(equations.loading, equations.state, &rate);
-    CandidateDirection { rate, forces, modes, alternatives, weak, dissipation, at_hand: AtHand::default() }
+    CandidateDirection { rate, forces, modes, alternatives, weak, dissipation, cached: CachedFactorisation::default() }
 }

@@ -29,18 +29,15 @@
 //! `f` of fast motion if the Schur complement on `f` and the border `q` has a negative determinant.
 
 use crate::algebra::sparse::factors::cholesky::{Definite, Triangle};
-use crate::branching::directions::candidate::{CandidateDirection, FoundDirections, WEAK, is_mechanism};
+use crate::branching::directions::candidate::{CandidateDirection, FoundDirections, is_mechanism};
+use crate::branching::directions::tolerances::WEAK_MARGIN;
 use crate::branching::uniqueness::sparse_uniqueness::equations::{ChangingContact, Equations};
 use crate::branching::uniqueness::sparse_uniqueness::pivoting;
+use crate::branching::uniqueness::sparse_uniqueness::tolerances::{
+    DEFINITENESS_MARGIN, DETERMINANT_TOLERANCE, LARGEST_WEIGHT,
+};
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::problem::state::Rate;
-
-/// Part of its diagonal by which a matrix may be reduced and still count as definite.
-const MARGIN: f64 = 1e-12;
-/// Smallest value of a determinant, relative to its terms, at which its sign counts.
-const CLEAR: f64 = 1e-9;
-/// The largest `|η|`.
-const MOST_WEIGHT: f64 = 0.999;
 
 /// The quantity whose sign distinguishes the solutions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,10 +87,10 @@ pub(super) fn proof(equations: &Equations<'_>, incoming: Option<&Rate>) -> Optio
     }
     let loose: Vec<usize> = (0..equations.size).filter(|column| is_loose[*column]).collect();
     lower.extend(loose.iter().map(|column| (*column, *column, 1.0)));
-    let (inverse, null) = match Definite::new(equations.size, &lower, -MARGIN) {
+    let (inverse, null) = match Definite::new(equations.size, &lower, -DEFINITENESS_MARGIN) {
         Some(definite) => (definite, None),
         None => {
-            let shifted = Definite::new(equations.size, &lower, MARGIN);
+            let shifted = Definite::new(equations.size, &lower, DEFINITENESS_MARGIN);
             match shifted.and_then(|shifted| null(equations, &shifted).map(|null| (shifted, Some(null)))) {
                 Some(found) => found,
                 None if loose.is_empty() => return proof_by_power(equations, lower, incoming?),
@@ -112,7 +109,11 @@ pub(super) fn proof(equations: &Equations<'_>, incoming: Option<&Rate>) -> Optio
         // Definite across the motion: the column where it is fastest is removed.
         hold(&mut lower, fastest(null)?);
     }
-    Definite::new(equations.size, &lower, -MARGIN).map(|_| Proof { control: DistinguishingQuantity::Load, null, loose })
+    Definite::new(equations.size, &lower, -DEFINITENESS_MARGIN).map(|_| Proof {
+        control: DistinguishingQuantity::Load,
+        null,
+        loose,
+    })
 }
 
 /// The proof that the symmetric part is definite across the load.
@@ -134,7 +135,7 @@ fn proof_by_power(equations: &Equations<'_>, lower: Triangle, incoming: &Rate) -
     }
     let mut rest = lower;
     hold(&mut rest, fast);
-    let rest = Definite::new(equations.size, &rest, -MARGIN)?;
+    let rest = Definite::new(equations.size, &rest, -DEFINITENESS_MARGIN)?;
     let mut load = equations.load();
     let at_fast = std::mem::replace(&mut load[fast], 0.0);
     let (mut by_column, mut by_load) = (column.clone(), load.clone());
@@ -147,7 +148,11 @@ fn proof_by_power(equations: &Equations<'_>, lower: Triangle, incoming: &Rate) -
     // -det, and the sizes of its terms.
     let value = (coupling[0] - coupling[1]).powi(2) + (stiffness[0] - stiffness[1]) * softness;
     let size = (coupling[0].abs() + coupling[1].abs()).powi(2) + (own.abs() + stiffness[1].abs()) * softness;
-    (value > CLEAR * size).then_some(Proof { control: DistinguishingQuantity::Power, null: None, loose: Vec::new() })
+    (value > DETERMINANT_TOLERANCE * size).then_some(Proof {
+        control: DistinguishingQuantity::Power,
+        null: None,
+        loose: Vec::new(),
+    })
 }
 
 /// The motion without resistance.
@@ -163,7 +168,7 @@ fn null(equations: &Equations<'_>, shifted: &Definite) -> Option<Vec<f64>> {
         sizes[row] = sizes[row].max(value.abs());
         sizes[column] = sizes[column].max(value.abs());
     });
-    let vanishes = |image: &Vec<f64>| image.iter().zip(&sizes).all(|(image, size)| image.abs() <= WEAK * size);
+    let vanishes = |image: &Vec<f64>| image.iter().zip(&sizes).all(|(image, size)| image.abs() <= WEAK_MARGIN * size);
     (images.iter().all(vanishes) && is_mechanism(equations.loading, equations.state, &free_rate(equations, &motion)))
         .then_some(motion)
 }
@@ -211,16 +216,16 @@ fn take_touching(
             continue;
         }
         let (tangent, normal) = (one.column, one.column + 1);
-        let moves = null.filter(|null| null[tangent].abs().max(null[normal].abs()) > WEAK);
+        let moves = null.filter(|null| null[tangent].abs().max(null[normal].abs()) > WEAK_MARGIN);
         let weight = match moves {
-            Some(null) if null[normal].abs() > WEAK => friction * null[tangent] / null[normal],
+            Some(null) if null[normal].abs() > WEAK_MARGIN => friction * null[tangent] / null[normal],
             Some(_) => return None,
             None => {
                 let [along, own] = resisted(&[(tangent, 0.0), (normal, 1.0)]);
-                (friction * along / own).clamp(-MOST_WEIGHT, MOST_WEIGHT)
+                (friction * along / own).clamp(-LARGEST_WEIGHT, LARGEST_WEIGHT)
             }
         };
-        if weight.abs() > MOST_WEIGHT {
+        if weight.abs() > LARGEST_WEIGHT {
             return None;
         }
         let form = [(tangent, -friction), (normal, weight)];
@@ -250,7 +255,7 @@ pub(super) fn is_only(equations: &Equations<'_>, candidate: &CandidateDirection,
         return false;
     }
     let holds = |(one, strict): (&ChangingContact, &bool), speed: &dyn Fn(usize) -> f64| {
-        let moves = |column: usize| speed(column).abs() > WEAK;
+        let moves = |column: usize| speed(column).abs() > WEAK_MARGIN;
         let normal = one.column + 1;
         *strict
             && match (candidate.modes[one.contact], one.direction) {
@@ -283,7 +288,7 @@ pub(super) fn has_none(equations: &Equations<'_>, sign: f64, proof: &Proof) -> b
         for one in &equations.changing {
             one_sided[if one.direction.is_some() { one.column } else { one.column + 1 }] = true;
         }
-        let zero = WEAK * equations.largest_load();
+        let zero = WEAK_MARGIN * equations.largest_load();
         let has_power =
             |(load, one_sided): (&f64, &bool)| if *one_sided { load * sign > zero } else { load.abs() > zero };
         return !equations.load().iter().zip(&one_sided).any(has_power);
@@ -296,17 +301,17 @@ pub(super) fn has_none(equations: &Equations<'_>, sign: f64, proof: &Proof) -> b
     let lifts = equations.changing.iter().filter(|one| one.direction.is_none()).map(|one| one.column + 1);
     let mut is_pulled = lifts
         .filter(|column| proof.loose.binary_search(column).is_ok())
-        .any(|column| load[column] * sign > WEAK * force);
+        .any(|column| load[column] * sign > WEAK_MARGIN * force);
     for sense in [1.0, -1.0] {
         is_pulled |= proof.null.as_ref().is_some_and(|null| {
             let opens = |one: &ChangingContact| match one.direction {
-                Some(_) => sense * null[one.column] >= -WEAK,
+                Some(_) => sense * null[one.column] >= -WEAK_MARGIN,
                 None => {
                     let friction = equations.loading.contacts[one.contact].friction.coefficient;
-                    sense * null[one.column + 1] >= friction * null[one.column].abs() - WEAK
+                    sense * null[one.column + 1] >= friction * null[one.column].abs() - WEAK_MARGIN
                 }
             };
-            equations.changing.iter().all(opens) && sense * sign * equations.power(null) > WEAK * force
+            equations.changing.iter().all(opens) && sense * sign * equations.power(null) > WEAK_MARGIN * force
         });
     }
     is_pulled
@@ -325,11 +330,15 @@ pub(super) fn add_free_motions(equations: &Equations<'_>, proof: &Proof, found: 
     }
     let back = |motion: &Vec<f64>| motion.iter().map(|value| -value).collect();
     for motion in motions.iter().flat_map(|motion| [motion.clone(), back(motion)]) {
-        let is_open =
-            |one: &ChangingContact| motion[if one.direction.is_some() { one.column } else { one.column + 1 }] >= -WEAK;
+        let is_open = |one: &ChangingContact| {
+            motion[if one.direction.is_some() { one.column } else { one.column + 1 }] >= -WEAK_MARGIN
+        };
         if equations.changing.iter().all(is_open) {
             let mut modes = equations.held.clone();
-            equations.changing.iter().for_each(|one| modes[one.contact] = equations.mode_of_motion(one, &motion, WEAK));
+            equations
+                .changing
+                .iter()
+                .for_each(|one| modes[one.contact] = equations.mode_of_motion(one, &motion, WEAK_MARGIN));
             found.candidates.push(pivoting::candidate(equations, free_rate(equations, &motion), modes, Vec::new()));
         }
     }

@@ -14,16 +14,12 @@
 //! included (`quadratic_program::active_cones`). The method may fail, and the interior-point method then takes over; a
 //! solution that it does return is exact to round-off and takes microseconds.
 
+use crate::complementarity::mpec::quadratic_program::tolerances::{MULTIPLIER_BLOCK, OPTIMALITY_TOLERANCE};
 use nalgebra::DVector;
 
 use crate::complementarity::mpec::quadratic_program::active_cones::{CORRECTIONS, ConeState, Expansions};
 use crate::complementarity::mpec::quadratic_program::interior_point::{QuadraticProgram, QuadraticSolution};
 use crate::complementarity::mpec::quadratic_program::linear_solve::{SquareMatrixFactors, product};
-
-/// Relative tolerance for constraints, for signs of multipliers and for residuals of the system.
-const ROUND_OFF: f64 = 1e-11;
-/// Diagonal subtracted in the block of the multipliers where rows are linearly dependent, relative to `1 + max |H|`.
-const MULTIPLIER_BLOCK: f64 = 1e-8;
 
 /// The inequalities and bounds assumed to be active, and the assumed states of the cones.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -85,10 +81,10 @@ pub fn solve(program: &QuadraticProgram, guess: &mut WorkingSet, changes: usize)
     let mut set = guess.clone();
     let mut expansions = Expansions::new(program);
     let solves = changes + if program.cones.is_empty() { 0 } else { CORRECTIONS };
-    let force = ROUND_OFF * (1.0 + program.gradient.amax());
+    let force = OPTIMALITY_TOLERANCE * (1.0 + program.gradient.amax());
     for _ in 0..=solves {
         let mut solution = solve_equalities(program, &set, &expansions)?;
-        let length = ROUND_OFF * (1.0 + solution.step.amax());
+        let length = OPTIMALITY_TOLERANCE * (1.0 + solution.step.amax());
         let changed = revise(program, &solution, &mut set, force, length);
         if !expansions.revise(program, &mut solution, &mut set.cones, force, length) && !changed {
             *guess = set;
@@ -189,7 +185,8 @@ fn solve_refined(
         unknowns += factors.solve(&residual)?;
     }
     let residual = (right - product(matrix, &unknowns)).amax();
-    let is_solved = unknowns.iter().all(|value| value.is_finite()) && residual <= ROUND_OFF * (1.0 + right.amax());
+    let is_solved =
+        unknowns.iter().all(|value| value.is_finite()) && residual <= OPTIMALITY_TOLERANCE * (1.0 + right.amax());
     is_solved.then_some(unknowns)
 }
 
@@ -210,7 +207,7 @@ fn revise(
         *flag = wanted;
     };
     for i in 0..slack.len() {
-        let row_length = length.max(ROUND_OFF * program.inequality_values[i].abs());
+        let row_length = length.max(OPTIMALITY_TOLERANCE * program.inequality_values[i].abs());
         update(&mut set.inequality[i], slack[i], solution.inequality_multipliers[i], row_length);
     }
     for j in 0..step.len() {

@@ -13,6 +13,7 @@
 //! which always has a solution; `ρ` is raised until the remaining violation no longer falls. Source: P. E. Gill, W.
 //! Murray and M. A. Saunders, *SNOPT*, SIAM Review 47 (2005), doi:10.1137/S0036144504446096, section on elastic mode.
 
+use crate::complementarity::mpec::quadratic_program::tolerances::{INITIAL_ACTIVITY_MARGIN, WEIGHT_FACTOR};
 use nalgebra::DVector;
 
 use crate::complementarity::mpec::program::counts::{SolverCounts, SolverIterate};
@@ -26,11 +27,8 @@ use crate::resources::cancel::CancelFlag;
 
 /// Largest number of changes of the working set before the interior-point method is used.
 const WORKING_SET_CHANGES: usize = 8;
-/// Largest number of increases of the elastic weight, and the factor of each.
+/// Largest number of increases of the elastic weight.
 const WEIGHT_RAISES: usize = 3;
-const WEIGHT_FACTOR: f64 = 100.0;
-/// Margin within which constraints are active at the start, before any multiplier is known.
-const REST_MARGIN: f64 = 1e-7;
 
 /// A step and its remaining violation.
 #[derive(Debug, Clone)]
@@ -134,7 +132,7 @@ impl StepSolver {
         }
         let mut set = match &before {
             Some(FinalWorkingSet::With(set)) => set.clone(),
-            Some(FinalWorkingSet::OnLine(_)) | None => WorkingSet::at_rest(program, REST_MARGIN),
+            Some(FinalWorkingSet::OnLine(_)) | None => WorkingSet::at_rest(program, INITIAL_ACTIVITY_MARGIN),
         };
         let mut solution =
             if self.interior_only { None } else { active_set::solve(program, &mut set, WORKING_SET_CHANGES) };

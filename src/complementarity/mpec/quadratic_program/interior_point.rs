@@ -15,6 +15,7 @@
 //! checked first. Its status "infeasible" is reported as a suspicion only, which the elastic program confirms or
 //! refutes.
 
+use crate::complementarity::mpec::quadratic_program::tolerances::INTERIOR_POINT_TOLERANCE;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use nalgebra::{DMatrix, DVector};
@@ -24,8 +25,6 @@ use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 use crate::resources::budget;
 use crate::resources::cancel::CancelFlag;
 
-/// Accuracy required of the interior-point method; the subsequent active-set step refines the solution to round-off.
-const TOLERANCE: f64 = 1e-10;
 /// Largest number of iterations of the interior-point method; 8 to 15 are usual.
 const ITERATIONS: u32 = 100;
 /// Largest number of multiplications of a factorisation that cannot be interrupted: of the order of a second.
@@ -348,9 +347,9 @@ fn interior_settings() -> DefaultSettings<f64> {
         max_iter: ITERATIONS,
         max_threads: 1,
         direct_solve_method: "qdldl".to_string(),
-        tol_gap_abs: TOLERANCE,
-        tol_gap_rel: TOLERANCE,
-        tol_feas: TOLERANCE,
+        tol_gap_abs: INTERIOR_POINT_TOLERANCE,
+        tol_gap_rel: INTERIOR_POINT_TOLERANCE,
+        tol_feas: INTERIOR_POINT_TOLERANCE,
         iterative_refinement_enable: false,
         ..DefaultSettings::default()
     }

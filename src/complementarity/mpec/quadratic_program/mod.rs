@@ -15,3 +15,4 @@ pub(crate) mod driver;
 pub mod interior_point;
 pub(crate) mod linear_solve;
 pub(crate) mod one_dimensional;
+pub(crate) mod tolerances;

@@ -11,19 +11,15 @@
 //! has the same solution and is solved by one pass over its rows. The multipliers `λ` of the equalities follow from the
 //! transposed system.
 
+use crate::complementarity::mpec::quadratic_program::tolerances::{
+    OPTIMALITY_TOLERANCE, PARAMETER_CHANGE_RATIO, SMALLEST_SLOPE,
+};
 use nalgebra::DVector;
 
 use crate::complementarity::mpec::program::cone;
 use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 use crate::complementarity::mpec::quadratic_program::interior_point::{QuadraticProgram, QuadraticSolution};
 use crate::complementarity::mpec::quadratic_program::linear_solve::SquareMatrixFactors;
-
-/// Relative tolerance for constraints and for residuals of the system.
-const ROUND_OFF: f64 = 1e-11;
-/// A row that changes less than this along the line does not depend on the parameter.
-const NO_SLOPE: f64 = 1e-12;
-/// Factor by which another variable has to change faster than the parameter to become the parameter.
-const BETTER_PARAMETER: f64 = 10.0;
 
 /// The constraint that is active at the solution on the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,7 +69,7 @@ impl LineSolver {
         let outcome = minimise(program, &factors, self.parameter, &start, &direction);
         self.factors = Some(factors);
         let bends = most_moved(&program.hessian, &direction);
-        if direction[bends].abs() > BETTER_PARAMETER {
+        if direction[bends].abs() > PARAMETER_CHANGE_RATIO {
             self.parameter = bends;
         }
         outcome
@@ -103,7 +99,7 @@ impl LineSolver {
                 miss
             };
             vector -= factors.solve(&residual(&vector))?.insert_row(parameter, 0.0);
-            let is_solved = largest(&residual(&vector)) <= ROUND_OFF * (1.0 + largest(right));
+            let is_solved = largest(&residual(&vector)) <= OPTIMALITY_TOLERANCE * (1.0 + largest(right));
             (is_solved && vector.iter().all(|value| value.is_finite())).then_some(vector)
         };
         let start = solve(&-&program.equality_values, 0.0)?;
@@ -129,7 +125,7 @@ fn minimise(
     let constraints = constraints(program, start, direction, minimum);
     let (mut from, mut to) = ((f64::NEG_INFINITY, None), (f64::INFINITY, None));
     for constraint in constraints.iter().filter(|constraint| constraint.is_violated(minimum)) {
-        if constraint.slope.abs() <= NO_SLOPE {
+        if constraint.slope.abs() <= SMALLEST_SLOPE {
             return OneDimensionalOutcome::Contradictory;
         }
         let place = -constraint.value / constraint.slope;
@@ -149,7 +145,7 @@ fn minimise(
         return OneDimensionalOutcome::Contradictory;
     }
     let step = start + direction * place;
-    let length = ROUND_OFF * (1.0 + largest(&step));
+    let length = OPTIMALITY_TOLERANCE * (1.0 + largest(&step));
     if program.cones.iter().any(|cone| cone::slack(cone.at(&step).as_slice()) < -length) {
         return OneDimensionalOutcome::Declined;
     }
@@ -199,14 +195,14 @@ fn constraints(
     direction: &DVector<f64>,
     minimum: f64,
 ) -> Vec<Constraint> {
-    let length = ROUND_OFF * (1.0 + largest(start).max(minimum.abs() * largest(direction)));
+    let length = OPTIMALITY_TOLERANCE * (1.0 + largest(start).max(minimum.abs() * largest(direction)));
     let rows = (0..program.inequality.nrows()).map(|i| {
         let constant = program.inequality_values[i];
         Constraint {
             binding: Binding::Inequality(i),
             value: constant + program.inequality.dot(i, start),
             slope: program.inequality.dot(i, direction),
-            margin: length.max(ROUND_OFF * constant.abs()),
+            margin: length.max(OPTIMALITY_TOLERANCE * constant.abs()),
         }
     });
     let lower = (0..start.len()).filter(|&j| program.lower[j].is_finite()).map(|j| Constraint {

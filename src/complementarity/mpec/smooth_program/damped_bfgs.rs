@@ -7,12 +7,9 @@
 //! Mathematics 630 (1978), doi:10.1007/BFb0067703.
 
 use crate::complementarity::mpec::program::sparse_rows::SparseRows;
+use crate::complementarity::mpec::smooth_program::tolerances::{LARGEST_CURVATURE, SMALLEST_CURVATURE};
 use crate::resources::budget::{self, Taken};
 use nalgebra::{DMatrix, DVector};
-
-/// Smallest curvature, relative to the identity, that an update may leave.
-const SMALLEST: f64 = 1e-10;
-const LARGEST: f64 = 1e12;
 
 #[derive(Debug, Clone)]
 pub struct Secant {
@@ -68,13 +65,13 @@ impl Secant {
         }
         let image = &self.matrix * step;
         let curvature = step.dot(&image);
-        if curvature <= SMALLEST * length {
+        if curvature <= SMALLEST_CURVATURE * length {
             return;
         }
         let share = if work >= 0.2 * curvature { 1.0 } else { 0.8 * curvature / (curvature - work) };
         let blended = change * share + &image * (1.0 - share);
         let blended_work = step.dot(&blended);
-        if blended_work <= SMALLEST * length || blended_work > LARGEST * length {
+        if blended_work <= SMALLEST_CURVATURE * length || blended_work > LARGEST_CURVATURE * length {
             return;
         }
         let next =

@@ -14,3 +14,4 @@ pub(crate) mod damped_bfgs;
 pub(crate) mod pair_treatment;
 pub(crate) mod relaxation;
 pub(crate) mod sqp;
+pub(crate) mod tolerances;

@@ -17,6 +17,9 @@
 //! programs with equilibrium constraints*, SIAM J. Optim. 17 (2006), doi:10.1137/S1052623402407382; J. Nocedal and
 //! S. J. Wright, *Numerical Optimization*, 2nd ed. (2006), chapter 18 (merit function, penalty rule, correction).
 
+use crate::complementarity::mpec::smooth_program::tolerances::{
+    HESSIAN_RIDGE, SMALLEST_REMOVED_SHARE, SUFFICIENT_DECREASE, UNBOUNDED_OBJECTIVE, UNBOUNDED_VARIABLE,
+};
 use nalgebra::DVector;
 
 use crate::complementarity::mpec::program::counts::SolverIterate;
@@ -29,17 +32,8 @@ use crate::complementarity::mpec::smooth_program::damped_bfgs::Secant;
 use crate::complementarity::mpec::smooth_program::relaxation::{Multipliers, SmoothProgramRows};
 use crate::resources::cancel::CancelFlag;
 
-/// Fraction of the predicted decrease that a step has to reach.
-const SUFFICIENT_DECREASE: f64 = 1e-4;
 /// Largest number of halvings of a step.
 const HALVINGS: usize = 30;
-/// Objective and variables beyond which a sequence counts as unbounded.
-const UNBOUNDED_OBJECTIVE: f64 = -1e20;
-const UNBOUNDED_VARIABLE: f64 = 1e11;
-/// Ridge on a problem's own (semidefinite) model, relative to its largest entry: keeps steps in flat directions bounded.
-const RIDGE: f64 = 1e-8;
-/// Fraction of the violation that a step must be predicted to remove; otherwise the point counts as locally infeasible.
-const INFEASIBLE_SHARE: f64 = 1e-6;
 
 /// Settings of one sequence of quadratic programs.
 #[derive(Debug, Clone, Copy)]
@@ -155,7 +149,9 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
                 self.take_last_step(&step.solution.step, violation.max(1e-2 * settings.tolerance));
                 return SqpEnd::Converged;
             }
-            if violation > settings.tolerance && violation - step.remaining_violation <= INFEASIBLE_SHARE * violation {
+            if violation > settings.tolerance
+                && violation - step.remaining_violation <= SMALLEST_REMOVED_SHARE * violation
+            {
                 return SqpEnd::Infeasible;
             }
             let Some(length) = self.search(&program, &step, violation, steps) else {
@@ -230,7 +226,7 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
                     return Err(Quantity::QuadraticModel);
                 }
                 secant.set_idle();
-                let ridge = RIDGE * model.amax().max(f64::MIN_POSITIVE);
+                let ridge = HESSIAN_RIDGE * model.amax().max(f64::MIN_POSITIVE);
                 (0..n).for_each(|j| model[(j, j)] += ridge);
                 model
             }

@@ -14,16 +14,13 @@
 //! from its parent's point.
 
 pub(crate) mod simplex;
+pub(crate) mod tolerances;
 
 use crate::complementarity::rates::rate_problem::{RateProblem, Signed};
+use crate::complementarity::rates::simplex_dictionary::tolerances::{
+    INFEASIBILITY_TOLERANCE, SMALLEST_PIVOT, VANISHING_COEFFICIENT,
+};
 use crate::resources::budget::{self, Taken};
-
-/// Coefficients (of forms and weights of unit size) below this are zero.
-const NOTHING: f64 = 1e-11;
-/// A form below zero by more than this is infeasible; looser than the tolerance of the exact test of a ray.
-const INFEASIBLE: f64 = 1e-8;
-/// Pivots below this are not used to prove anything.
-const SMALL_PIVOT: f64 = 1e-7;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Variable {
@@ -125,7 +122,7 @@ impl Dictionary {
         }
         let row = &self.table[last..last + self.width];
         let pivot = (1..self.width).max_by(|a, b| row[*a].abs().total_cmp(&row[*b].abs()));
-        match pivot.filter(|pivot| row[*pivot].abs() > NOTHING) {
+        match pivot.filter(|pivot| row[*pivot].abs() > VANISHING_COEFFICIENT) {
             None => {
                 // No form is known to be nonnegative: the cone consists of lines.
                 self.table.truncate(last);
@@ -248,7 +245,7 @@ impl Dictionary {
     /// if any.
     fn replace_weight(&mut self) -> Option<usize> {
         budget::spend(self.rows.len() * self.columns.len());
-        let mut best = (NOTHING, 0, 0);
+        let mut best = (VANISHING_COEFFICIENT, 0, 0);
         for column in 1..self.columns.len() {
             if self.columns[column] != Variable::Weight {
                 continue;
@@ -327,16 +324,18 @@ impl Dictionary {
                 let best = (1..self.columns.len())
                     .map(|column| {
                         let size = self.entry(row, column).abs();
-                        (size, self.columns[column] == Variable::Weight && size > SMALL_PIVOT, column)
+                        (size, self.columns[column] == Variable::Weight && size > SMALLEST_PIVOT, column)
                     })
-                    .filter(|(size, _, _)| *size > NOTHING)
+                    .filter(|(size, _, _)| *size > VANISHING_COEFFICIENT)
                     .max_by(|a, b| a.1.cmp(&b.1).then(a.0.total_cmp(&b.0)).then(b.2.cmp(&a.2)));
                 match best {
-                    Some((size, _, column)) if size > SMALL_PIVOT => {
+                    Some((size, _, column)) if size > SMALLEST_PIVOT => {
                         self.pivot(row, column);
                         column
                     }
-                    None if !self.lines_only && self.entry(row, 0).abs() > INFEASIBLE => return self.leave_lines(),
+                    None if !self.lines_only && self.entry(row, 0).abs() > INFEASIBILITY_TOLERANCE => {
+                        return self.leave_lines();
+                    }
                     // Already zero, or too close to zero to decide: the condition is omitted, which enlarges the cone,
                     // never reduces it.
                     _ => {
@@ -389,8 +388,8 @@ impl Dictionary {
             VariablePosition::Zero => true,
             VariablePosition::Column(_) => false,
             VariablePosition::Row(row) => {
-                self.entry(row, 0).abs() <= INFEASIBLE
-                    && (1..self.columns.len()).all(|column| self.entry(row, column).abs() <= INFEASIBLE)
+                self.entry(row, 0).abs() <= INFEASIBILITY_TOLERANCE
+                    && (1..self.columns.len()).all(|column| self.entry(row, column).abs() <= INFEASIBILITY_TOLERANCE)
             }
         }
     }

@@ -1,12 +1,10 @@
 //! The dual simplex method on a dictionary, and the removal of coordinates that a row forces to zero.
 
-use crate::complementarity::rates::simplex_dictionary::{
-    Dictionary, Feasibility, INFEASIBLE, NOTHING, SMALL_PIVOT, Variable, VariablePosition,
+use crate::complementarity::rates::simplex_dictionary::tolerances::{
+    FORCING_COEFFICIENT, INFEASIBILITY_TOLERANCE, SMALLEST_PIVOT, VANISHING_COEFFICIENT,
 };
+use crate::complementarity::rates::simplex_dictionary::{Dictionary, Feasibility, Variable, VariablePosition};
 use crate::resources::budget;
-
-/// Magnitude of negative coefficients from which a coordinate is forced to zero.
-const FORCING: f64 = 1e-3;
 
 /// Whether the cone contains more than lines; the dictionary moves to a point of the cone.
 pub fn feasibility(dictionary: &mut Dictionary) -> Feasibility {
@@ -21,7 +19,7 @@ pub fn feasibility(dictionary: &mut Dictionary) -> Feasibility {
         for row in 0..dictionary.rows.len() {
             let form = dictionary.rows[row];
             let value = dictionary.entry(row, 0);
-            if !dictionary.nonnegative[form] || value >= -INFEASIBLE {
+            if !dictionary.nonnegative[form] || value >= -INFEASIBILITY_TOLERANCE {
                 continue;
             }
             let better = match leaving {
@@ -39,7 +37,7 @@ pub fn feasibility(dictionary: &mut Dictionary) -> Feasibility {
         for column in 1..dictionary.columns.len() {
             let size = dictionary.entry(row, column);
             let Variable::Form(form) = dictionary.columns[column] else { continue };
-            if size <= SMALL_PIVOT {
+            if size <= SMALLEST_PIVOT {
                 largest_small = largest_small.max(size);
                 continue;
             }
@@ -75,11 +73,13 @@ pub fn drop_forced(dictionary: &mut Dictionary) {
         budget::spend(used);
         let values = &dictionary.table[row * dictionary.width..row * dictionary.width + used];
         let forces = dictionary.nonnegative[dictionary.rows[row]]
-            && values[0].abs() <= NOTHING
-            && values[1..].iter().all(|value| *value <= NOTHING)
-            && (1..used)
-                .all(|column| dictionary.columns[column] != Variable::Weight || values[column].abs() <= NOTHING);
-        let forced = if forces { (1..used).rev().filter(|c| values[*c] < -FORCING).collect() } else { Vec::new() };
+            && values[0].abs() <= VANISHING_COEFFICIENT
+            && values[1..].iter().all(|value| *value <= VANISHING_COEFFICIENT)
+            && (1..used).all(|column| {
+                dictionary.columns[column] != Variable::Weight || values[column].abs() <= VANISHING_COEFFICIENT
+            });
+        let forced =
+            if forces { (1..used).rev().filter(|c| values[*c] < -FORCING_COEFFICIENT).collect() } else { Vec::new() };
         if forced.is_empty() {
             row += 1;
             continue;

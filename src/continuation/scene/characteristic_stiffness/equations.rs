@@ -88,11 +88,7 @@ fn factorise_dense(
         return None;
     }
     let mut matrix = DMatrix::zeros(row.len() + 1, row.len() + 1);
-    estimate.structure.each_stiffness(displacement, &mut |row, column, value| {
-        if let (Some(row), Some(column)) = (estimate.structure.unknown_of[row], estimate.structure.unknown_of[column]) {
-            matrix[(row, column)] += value;
-        }
-    });
+    estimate.structure.add_tangent(displacement, &mut matrix);
     add_ties_and_borders(estimate, displacement, ties, row, &mut matrix);
     Factorisation::new(matrix)
 }
@@ -134,13 +130,9 @@ fn factorise_apart(
         matrix[(unknown, unknowns)] = -estimate.pattern.forces[*freedom];
         matrix[(unknowns, unknown)] = row[unknown];
     }
-    structure.each_stiffness_across(displacement, &mut |row, column, value| {
-        let Some(row) = structure.unknown_of[row] else { return };
-        match structure.unknown_of[column] {
-            Some(column) => matrix[(row, column)] += value,
-            None => matrix[(row, unknowns)] += value * estimate.support_rate(column),
-        }
-    });
+    let support_rate = |freedom: usize| estimate.support_rate(freedom);
+    let add = |row: usize, column: usize, value: f64| matrix[(row, column)] += value;
+    structure.each_stiffness_across(displacement, &mut structure.over_unknowns(support_rate, add));
     let stiffener = |stretching: &Stretching, own: f64| {
         let rows = unknowns_of(estimate, stretching);
         let by_load = (unknowns, by_load(estimate, stretching, own));

@@ -20,37 +20,31 @@
 //! displacements.
 
 pub(crate) mod equations;
+pub(crate) mod tolerances;
 
+use crate::continuation::scene::characteristic_stiffness::tolerances::{
+    ACCEPTED_CORRECTION, CLOSED_GAP, CONSTRAINT_STIFFNESS, ENERGY_ROUND_OFF, SMALLEST_ELEMENT_ENERGY,
+};
 use crate::mechanics::contact::ContactPair;
 use crate::mechanics::contact::vector::{Vector, add, dot};
 use crate::mechanics::problem::contact_motion;
 use crate::mechanics::problem::loading::LoadPattern;
-use crate::mechanics::structure::assembly::{ElementAt, ElementBuffer};
+use crate::mechanics::structure::assembly::{ElementAt, ForceBuffer, StiffnessBuffer};
 use crate::mechanics::structure::elements::Stretching;
 use crate::mechanics::structure::{MOST_ANALYSED, Structure};
 use nalgebra::DVector;
 
-/// Gap (dimensionless) up to which a contact is closed.
-const CLOSED: f64 = 1e-10;
-/// Stiffness that fixes a closed contact, relative to that of its node.
-const HELD_BY: f64 = 1e6;
-/// Energy of the elements, relative to that of the fixed contacts, below which the load is carried by these contacts.
-const NOT_HELD: f64 = 1e-3;
 /// Size of the finite motion, relative to the longest bar; the next is tried where Newton's method does not converge.
 const FINITE: [f64; 2] = [0.05, 0.0125];
 /// Largest number of Newton iterations.
 const MOST_ITERATIONS: usize = 12;
-/// Size of the last correction relative to the motion.
-const CONVERGED: f64 = 1e-9;
-/// Energy, relative to the products of the elements' stiffnesses with whole displacements, below which it is round-off.
-const ROUNDING: f64 = 1e-26;
 /// Largest number of times that contacts penetrated by a motion are closed.
 const MOST_CLOSINGS: usize = 2;
 
 /// The stiffness of the elements that resist a stage's load pattern, as an axial stiffness, dimensionless; `None` where
 /// no movable element resists it.
 pub(super) fn resisting(structure: &Structure, contacts: &[ContactPair], pattern: &LoadPattern) -> Option<f64> {
-    let held = contacts.iter().map(|contact| contact.gap(&[0.0; 3]) <= CLOSED).collect();
+    let held = contacts.iter().map(|contact| contact.gap(&[0.0; 3]) <= CLOSED_GAP).collect();
     let still = vec![0.0; structure.freedoms()];
     let mut response = StiffnessEstimate {
         structure,
@@ -91,10 +85,10 @@ fn stiffness_at(structure: &Structure, still: &[f64]) -> Vec<f64> {
 /// The (lower) median stiffness of the bars, or of the linear elements where there are no bars. An element's stiffness
 /// is the sum of its diagonal entries at a node, which for a bar does not depend on the axes.
 fn usual_stiffness(structure: &Structure, still: &[f64]) -> f64 {
-    let mut buffer = ElementBuffer::default();
+    let mut buffer = StiffnessBuffer::default();
     let of_element = |at: ElementAt<'_>| {
         let mut sum = 0.0_f64;
-        at.each_stiffness(still, &mut buffer, &mut |row, column, value| {
+        at.alone().each_stiffness(still, &mut buffer, &mut |row, column, value| {
             if row == column {
                 sum += value;
             }
@@ -181,7 +175,7 @@ impl StiffnessEstimate<'_> {
                 let by_load = -dot(vector, &self.pattern.shifts[index]);
                 (stiffness > 0.0).then_some(Tie { stretching: Stretching { stiffness, along }, by_load })
             };
-            ties[0].extend(tie(&frame.normal, HELD_BY * stiffness));
+            ties[0].extend(tie(&frame.normal, CONSTRAINT_STIFFNESS * stiffness));
             let tangents = frame.tangents.iter().take(contact.tangents());
             ties[1].extend(tangents.filter_map(|tangent| tie(tangent, self.usual)));
         }
@@ -277,7 +271,7 @@ impl StiffnessEstimate<'_> {
             if !correction.is_finite() || correction > 1.0 {
                 return None;
             }
-            if correction <= CONVERGED * size {
+            if correction <= ACCEPTED_CORRECTION * size {
                 return Some(self.motion(&values));
             }
         }
@@ -289,16 +283,16 @@ impl StiffnessEstimate<'_> {
     fn mean(&self, motion: &Motion, is_finite: bool) -> Option<f64> {
         let still = vec![0.0; motion.displacement.len()];
         let (mut stored, mut logarithms, mut most) = (0.0, 0.0, 0.0);
-        let mut buffer = ElementBuffer::default();
+        let (mut buffer, mut matrix_buffer) = (ForceBuffer::default(), StiffnessBuffer::default());
         for element in self.structure.elements() {
             let energy = if is_finite {
                 let after = element.energy(&motion.displacement, &mut buffer);
                 2.0 * (after - element.energy(&still, &mut buffer)).abs()
             } else {
-                energy_at_first_order(element, &still, motion, &mut buffer)
+                energy_at_first_order(element, &still, motion, &mut matrix_buffer)
             };
             let stiffness = element.axial_stiffness(&motion.displacement, &mut buffer);
-            most += most_energy(element, &still, motion, &mut buffer);
+            most += most_energy(element, &still, motion, &mut matrix_buffer);
             if energy > 0.0 && stiffness > 0.0 {
                 stored += energy;
                 logarithms += energy * stiffness.ln();
@@ -306,26 +300,26 @@ impl StiffnessEstimate<'_> {
         }
         let [held, _] = self.ties(&still);
         let held: f64 = held.iter().map(|tie| tie.energy(motion)).sum();
-        (stored > NOT_HELD * held && stored > ROUNDING * most && stored.is_finite())
+        (stored > SMALLEST_ELEMENT_ENERGY * held && stored > ENERGY_ROUND_OFF * most && stored.is_finite())
             .then(|| (logarithms / stored).exp())
     }
 }
 
 /// The energy of an element if the contributions of the displacements did not cancel.
-fn most_energy(element: ElementAt<'_>, still: &[f64], motion: &Motion, buffer: &mut ElementBuffer) -> f64 {
+fn most_energy(element: ElementAt<'_>, still: &[f64], motion: &Motion, buffer: &mut StiffnessBuffer) -> f64 {
     let mut most = 0.0;
-    element.each_stiffness(still, buffer, &mut |row, column, value| {
+    element.alone().each_stiffness(still, buffer, &mut |row, column, value| {
         most += (motion.displacement[row] * value * motion.displacement[column]).abs();
     });
     most
 }
 
 /// `u·K_e u`
-fn energy_at_first_order(element: ElementAt<'_>, still: &[f64], motion: &Motion, buffer: &mut ElementBuffer) -> f64 {
+fn energy_at_first_order(element: ElementAt<'_>, still: &[f64], motion: &Motion, buffer: &mut StiffnessBuffer) -> f64 {
     let of = |stretching: Stretching| Tie { stretching, by_load: 0.0 }.energy(motion);
     let stretched: f64 = element.stretching(still).map(of).sum();
     let mut across = 0.0;
-    element.each_stiffness_across(still, buffer, &mut |row, column, value| {
+    element.alone().each_stiffness_across(still, buffer, &mut |row, column, value| {
         across += motion.displacement[row] * value * motion.displacement[column];
     });
     stretched + across.abs()

@@ -10,7 +10,9 @@ use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::mechanics::multi_contact::moving_planes::Carried;
 use crate::mechanics::multi_contact::planar::{self, rays};
 use crate::mechanics::multi_contact::rate_options;
-use crate::mechanics::multi_contact::spatial::Pocket;
+use crate::mechanics::multi_contact::rate_options::tolerances::{BOUND_SINE, GRAZING_SPEED};
+use crate::mechanics::multi_contact::spatial::ContactGroup;
+use crate::mechanics::multi_contact::spatial::sliding;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces;
 use crate::mechanics::problem::state::{Rate, State};
@@ -30,7 +32,7 @@ pub(crate) struct Changeable {
     /// The present force on the node.
     pub(crate) force: Vector,
     /// The closed obstacles of a node with several contacts, where it is free in space or guided.
-    pub(crate) pocket: Option<Pocket>,
+    pub(crate) group: Option<ContactGroup>,
 }
 
 /// The outcome of an option: the modes of the contacts.
@@ -38,11 +40,6 @@ pub(crate) struct Changeable {
 pub(crate) struct OptionOutcome {
     pub modes: Vec<(usize, Mode)>,
 }
-
-/// Sine of the angle below which a ray lies on the bound of a sum of cones.
-const ON_BOUND: f64 = 1e-9;
-/// Rates of a gap and speeds along an obstacle (at unit arc length) up to this are zero at first order.
-const GRAZING: f64 = 1e-9;
 
 impl Changeable {
     /// The contacts with their velocities at a state; `next` is the first free column.
@@ -52,9 +49,9 @@ impl Changeable {
         let contact = &loading.contacts[contacts[0]];
         let corner = loading.corners.iter().find(|corner| corner.contacts.contains(&contacts[0]));
         let is_cornered = matches!(standing, Standing::Cornered { .. });
-        let pocket = corner
+        let group = corner
             .filter(|corner| is_cornered && !node_forces::is_in_plane(loading, corner))
-            .map(|_| Pocket::new(loading, &contacts, state));
+            .map(|_| ContactGroup::new(loading, &contacts, state));
         let directions: Vec<Vector> = match standing {
             Standing::Settled(_) => Vec::new(),
             Standing::OnCone { direction } => vec![direction],
@@ -62,18 +59,18 @@ impl Changeable {
                 let tangents = frame.tangents.iter().take(contact.tangents());
                 std::iter::once(frame.normal).chain(tangents.copied()).collect()
             }
-            Standing::Cornered { .. } => match &pocket {
-                Some(pocket) => pocket.free.clone(),
+            Standing::Cornered { .. } => match &group {
+                Some(group) => group.free.clone(),
                 None => vec![frame.normal, frame.tangents[0]],
             },
         };
         let velocities = directions.into_iter().enumerate().map(|(k, direction)| (next + k, direction)).collect();
-        let force = match &pocket {
-            Some(pocket) => pocket.force(loading, state),
+        let force = match &group {
+            Some(group) => group.force(loading, state),
             None => node_forces::total_force(loading, contacts.iter().copied(), state),
         };
         let reaction = state.reactions[contacts[0]];
-        Self { contacts, standing, frames, velocities, reaction, force, pocket }
+        Self { contacts, standing, frames, velocities, reaction, force, group }
     }
 
     fn carried(&self, loading: Loading<'_>, state: &State) -> Option<Carried> {
@@ -86,9 +83,9 @@ impl Changeable {
         if let Some(carried) = self.carried(loading, state) {
             return carried.dissipation(loading, modes, &self.force, state, rate);
         }
-        if let Some(pocket) = &self.pocket {
+        if let Some(group) = &self.group {
             let motion = loading.relative_rate(self.contacts[0], state, rate);
-            return pocket.drag_in(modes, &self.force) * size(&motion);
+            return sliding::drag_in(group, modes, &self.force) * size(&motion);
         }
         let slips = |(contact, _): &(&usize, &Frame)| matches!(modes[**contact], Mode::Slip { .. });
         let Some((contact, frame)) = self.contacts.iter().zip(&self.frames).find(slips) else { return 0.0 };
@@ -125,10 +122,10 @@ impl Changeable {
             }
             return;
         }
-        if let Some(pocket) = &self.pocket {
+        if let Some(group) = &self.group {
             let whole = node_forces::force(&self.frames[0], &rate.reactions[self.contacts[0]]);
             let motion = loading.relative_rate(self.contacts[0], state, rate);
-            let parts = pocket.rates_in(modes, &self.force, &whole, &motion);
+            let parts = sliding::rates_in(group, modes, &self.force, &whole, &motion);
             if !parts.is_empty() {
                 self.contacts.iter().for_each(|contact| rate.reactions[*contact] = Reaction::default());
                 parts.into_iter().for_each(|(contact, part)| rate.reactions[contact] = part);
@@ -165,7 +162,7 @@ impl Changeable {
         let (normal, motion) = (self.frames[0].normal, loading.relative_rate(self.contacts[0], state, rate));
         let opening = dot(&normal, &motion);
         let along = add(&motion, -opening, &normal);
-        (opening.abs() <= GRAZING && size(&along) > GRAZING).then(|| Mode::Slip { direction: unit(&along) })
+        (opening.abs() <= GRAZING_SPEED && size(&along) > GRAZING_SPEED).then(|| Mode::Slip { direction: unit(&along) })
     }
 
     pub fn tangents(&self) -> [Vector; 2] {
@@ -175,7 +172,7 @@ impl Changeable {
     /// Whether the rate of the reaction of a sticking contact lies within the circular cone, which linear forms do not
     /// ensure.
     pub fn is_in_cone(&self, loading: Loading<'_>, modes: &[Mode], rate: &Rate, tolerance: f64) -> bool {
-        if self.pocket.is_some() {
+        if self.group.is_some() {
             return self.margin(modes, rate).is_none_or(|margin| margin >= -tolerance);
         }
         let contact = self.contacts[0];
@@ -230,8 +227,8 @@ impl Changeable {
                 let free = Choice { zero: forces, nonnegative: vec![Signed::plus(zero[0])], implied: Vec::new() };
                 (Entity { options: vec![stick, free], touching: None }, vec![single(Mode::Stick), single(Mode::Free)])
             }
-            (Standing::Cornered { unloaded, zero, .. }, _) if let Some(pocket) = &self.pocket => {
-                rate_options::spatial::options(self, pocket, (loading, state), unloaded, zero, forms)
+            (Standing::Cornered { unloaded, zero, .. }, _) if let Some(group) = &self.group => {
+                rate_options::spatial::options(self, group, (loading, state), unloaded, zero, forms)
             }
             (Standing::Cornered { zero, .. }, _) if let Some(carried) = Carried::of(loading, &self.contacts, state) => {
                 rate_options::moving_planes::options(&carried, loading, state, self, zero, forms)
@@ -247,12 +244,12 @@ impl Changeable {
 
     /// For an unloaded node at several obstacles in space, the slips along each rough obstacle alone while the others
     /// open.
-    pub fn touches_in_pocket(&self, entity: usize, forms: &mut Forms<'_>) -> Vec<(usize, Touch)> {
-        let (Some(pocket), Standing::Cornered { unloaded: true, .. }) = (&self.pocket, self.standing) else {
+    pub fn touches_in_group(&self, entity: usize, forms: &mut Forms<'_>) -> Vec<(usize, Touch)> {
+        let (Some(group), Standing::Cornered { unloaded: true, .. }) = (&self.group, self.standing) else {
             return Vec::new();
         };
         let rough =
-            (0..self.contacts.len()).filter(|place| pocket.free.len() == 3 && pocket.frictions[*place].is_rough());
+            (0..self.contacts.len()).filter(|place| group.free.len() == 3 && group.frictions[*place].is_rough());
         let touch = |place: usize| {
             let frame = &self.frames[place];
             let along = [frame.normal, frame.tangents[0], frame.tangents[1]];
@@ -261,7 +258,7 @@ impl Changeable {
                 entity,
                 velocities: along.map(|direction| forms.velocity(self, &direction)),
                 forces: along.map(|direction| forms.force_along(self, &direction)),
-                friction: pocket.frictions[place].coefficient,
+                friction: group.frictions[place].coefficient,
                 opening: others.map(|other| forms.velocity(self, &self.frames[other].normal)).collect(),
             };
             (self.contacts[place], touch)
@@ -271,15 +268,15 @@ impl Changeable {
 
     /// The margin of a rate of force against sliding, for a held node in space or a guided one.
     pub fn margin(&self, modes: &[Mode], rate: &Rate) -> Option<f64> {
-        let (Some(pocket), Standing::Cornered { unloaded, zero, .. }) = (&self.pocket, self.standing) else {
+        let (Some(group), Standing::Cornered { unloaded, zero, .. }) = (&self.group, self.standing) else {
             return None;
         };
         let is_held = self.contacts.iter().all(|contact| modes[*contact] == Mode::Stick);
         is_held.then(|| {
             let of_contact = |(contact, frame): (&usize, &Frame)| node_forces::force(frame, &rate.reactions[*contact]);
             let parts = self.contacts.iter().zip(&self.frames).map(of_contact);
-            let whole = pocket.free_part(&parts.fold([0.0; 3], |sum, part| add(&sum, 1.0, &part)));
-            pocket.margin_of_rate(&self.force, unloaded, zero, &whole)
+            let whole = group.free_part(&parts.fold([0.0; 3], |sum, part| add(&sum, 1.0, &part)));
+            group.margin_of_rate(&self.force, unloaded, zero, &whole)
         })
     }
 
@@ -295,6 +292,40 @@ impl Changeable {
                 forms.force_along(self, &friction.slack_form(&normal, &scaled(&tangent, -1.0))),
             ],
         })
+    }
+
+    /// The conditions under which a node with several contacts in the plane slips along one obstacle, in the sense of
+    /// the tangent (1), against it (-1), or without friction (0), while the others open. `ray`: the direction of the
+    /// reaction; `gaps`: the forms of the rates of all gaps.
+    fn slip_in_corner(
+        &self,
+        place: usize,
+        sense: f64,
+        ray: &Vector,
+        gaps: &[usize],
+        unloaded: bool,
+        forms: &mut Forms<'_>,
+    ) -> Choice {
+        let (frame, tangent) = (&self.frames[place], self.frames[place].tangents[0]);
+        let across = [-ray[1], ray[0], 0.0];
+        let mut off_ray = forms.force_rate(self, &across);
+        if frame.curvature != 0.0 {
+            let turn = frame.curvature * dot(&self.force, ray);
+            // The ray turns clockwise as the node moves along the tangent of a convex obstacle.
+            for (column, direction) in &self.velocities {
+                off_ray[*column] += turn * dot(direction, &tangent);
+            }
+        }
+        let others = gaps.iter().enumerate().filter(|(other, _)| *other != place);
+        let mut nonnegative: Vec<Signed> = others.map(|(_, gap)| Signed::plus(*gap)).collect();
+        if sense != 0.0 {
+            let along = forms.velocity(self, &tangent);
+            nonnegative.push(Signed { form: along, sign: sense });
+        }
+        if unloaded {
+            nonnegative.push(Signed::plus(forms.force_along(self, ray)));
+        }
+        Choice { zero: vec![gaps[place], forms.force(off_ray)], nonnegative, implied: Vec::new() }
     }
 
     /// The options of a node with several contacts in the plane: the node is held, slides along one of its obstacles
@@ -337,40 +368,13 @@ impl Changeable {
                     .iter()
                     .flatten()
                     .zip(facets)
-                    .any(|(inward, active)| active && dot(inward, &ray).abs() <= ON_BOUND);
+                    .any(|(inward, active)| active && dot(inward, &ray).abs() <= BOUND_SINE);
                 // The opposite ray on the bound of a half-plane belongs to another contact.
                 let on_ray = on_bound && dot(&ray, &self.force) > 0.0;
-                if !unloaded && !on_ray {
-                    continue;
+                if unloaded || on_ray {
+                    options.push(self.slip_in_corner(place, sense, &ray, &gaps, unloaded, forms));
+                    outcomes.push(outcome(Some((*contact, scaled(&tangent, sense))), Mode::Free));
                 }
-                let across = [-ray[1], ray[0], 0.0];
-                let mut off_ray = forms.force_rate(self, &across);
-                if frame.curvature != 0.0 {
-                    let turn = frame.curvature * dot(&self.force, &ray);
-                    // The ray turns clockwise as the node moves along the tangent of a convex obstacle.
-                    for (column, direction) in &self.velocities {
-                        off_ray[*column] += turn * dot(direction, &tangent);
-                    }
-                }
-                let mut nonnegative: Vec<Signed> = gaps
-                    .iter()
-                    .enumerate()
-                    .filter(|(other, _)| *other != place)
-                    .map(|(_, gap)| Signed::plus(*gap))
-                    .collect();
-                if sense != 0.0 {
-                    let along = forms.velocity(self, &tangent);
-                    nonnegative.push(Signed { form: along, sign: sense });
-                }
-                if unloaded {
-                    nonnegative.push(Signed::plus(forms.force_along(self, &ray)));
-                }
-                options.push(Choice {
-                    zero: vec![gaps[place], forms.force(off_ray)],
-                    nonnegative,
-                    implied: Vec::new(),
-                });
-                outcomes.push(outcome(Some((*contact, scaled(&tangent, sense))), Mode::Free));
             }
         }
         if unloaded {

@@ -9,3 +9,4 @@
 pub(crate) mod contact_options;
 pub(crate) mod moving_planes;
 pub(crate) mod spatial;
+pub(crate) mod tolerances;

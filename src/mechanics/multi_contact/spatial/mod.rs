@@ -28,8 +28,13 @@
 
 pub(crate) mod cone_sum;
 pub(crate) mod sliding;
+pub(crate) mod tolerances;
 
 use crate::mechanics::contact::coulomb::CoulombFriction;
+use crate::mechanics::multi_contact::spatial::tolerances::{
+    BOUND_TOLERANCE, CONE_TOLERANCE, INDEPENDENCE_SINE, MEETING_FORCE_ROUNDING, NEGLIGIBLE_COMPONENT,
+    PERPENDICULAR_COSINE,
+};
 use crate::mechanics::problem::node_forces::free_directions;
 pub use sliding::{Edge, beside, taken_over};
 
@@ -42,7 +47,7 @@ use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::budget;
 
 /// The closed obstacles of a node.
-pub struct Pocket {
+pub struct ContactGroup {
     pub contacts: Vec<usize>,
     pub frames: Vec<Frame>,
     pub frictions: Vec<CoulombFriction>,
@@ -57,7 +62,7 @@ pub struct Pocket {
 /// A slide of the node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Slide {
-    /// Along the edge of two obstacles; `places` are their indices in the [`Pocket`].
+    /// Along the edge of two obstacles; `places` are their indices in the [`ContactGroup`].
     Edge { places: [usize; 2], direction: Vector },
     /// Along one obstacle, the others opening.
     Face { place: usize },
@@ -73,20 +78,7 @@ pub struct Drive {
     pub excess: f64,
 }
 
-/// Sine of the angle below which directions coincide, and cosine below which they are perpendicular.
-const SAME: f64 = 1e-9;
-/// Normals are independent where the sine of the angle between them is above this.
-const INDEPENDENT: f64 = 1e-6;
-/// Cones closer to all of space than this (angle) count as not all of space.
-const FLAT: f64 = 1e-12;
-/// A force is on a bound if its distance is within this fraction of the force ...
-const AT_BOUND: f64 = 1e-9;
-/// ... or of the forces that meet at the node, whose round-off it may be.
-const ROUND_OFF: f64 = 1e-12;
-/// Components of a force below this fraction of it count as zero.
-const NONE: f64 = 1e-12;
-
-impl Pocket {
+impl ContactGroup {
     pub fn new(loading: Loading<'_>, contacts: &[usize], state: &State) -> Self {
         let free = free_directions(loading, contacts[0]);
         let frames: Vec<Frame> = contacts.iter().map(|contact| loading.frame(*contact, state)).collect();
@@ -122,10 +114,10 @@ impl Pocket {
         self.pairs().all(|[first, second]| {
             let across = cross(&unit(&self.normals[first]), &unit(&self.normals[second]));
             let edge = unit(&across);
-            let on_edge = |place: &usize| dot(&unit(&self.normals[*place]), &edge).abs() <= INDEPENDENT;
+            let on_edge = |place: &usize| dot(&unit(&self.normals[*place]), &edge).abs() <= INDEPENDENCE_SINE;
             let of_edge = || (0..self.contacts.len()).filter(on_edge);
             let rough = of_edge().any(|place| self.frictions[place].is_rough());
-            size(&across) > INDEPENDENT && (self.free.len() < 3 || !rough || of_edge().count() == 2)
+            size(&across) > INDEPENDENCE_SINE && (self.free.len() < 3 || !rough || of_edge().count() == 2)
         })
     }
 
@@ -158,7 +150,7 @@ impl Pocket {
     /// Whether a direction leads into no obstacle, those at the indices `but` excepted.
     pub fn opens(&self, direction: &Vector, but: &[usize]) -> bool {
         (0..self.contacts.len())
-            .all(|place| but.contains(&place) || dot(&self.frames[place].normal, direction) >= -SAME)
+            .all(|place| but.contains(&place) || dot(&self.frames[place].normal, direction) >= -PERPENDICULAR_COSINE)
     }
 
     /// The linear forms of a force that give the two normal reactions at an edge.
@@ -188,7 +180,7 @@ impl Pocket {
     /// The action of a force along a slide; `None` where the force does not press the node against the obstacles of the
     /// slide, or drives it into another.
     pub fn drive(&self, slide: &Slide, force: &Vector) -> Option<Drive> {
-        let zero = NONE * size(force);
+        let zero = NEGLIGIBLE_COMPONENT * size(force);
         match *slide {
             Slide::Edge { places, direction } => {
                 let normals = self.edge_forms(places, &direction).map(|form| dot(&form, force));
@@ -209,7 +201,7 @@ impl Pocket {
 
     /// The margin of a force against sliding or leaving; negative where the node would slide or leave.
     pub fn margin(&self, force: &Vector) -> f64 {
-        if self.is_jammed() {
+        if cone_sum::is_jammed(self) {
             return f64::INFINITY;
         }
         if self.opens(&scaled(&unit(force), -1.0), &[]) {
@@ -221,7 +213,7 @@ impl Pocket {
 
     /// The derivative of the margin along a rate of the force.
     pub fn margin_slope(&self, force: &Vector, rate: &Vector) -> f64 {
-        if self.is_jammed() {
+        if cone_sum::is_jammed(self) {
             return 0.0;
         }
         if self.opens(&scaled(&unit(force), -1.0), &[]) {
@@ -251,20 +243,20 @@ impl Pocket {
     pub fn keeps(&self, loading: Loading<'_>, state: &State, rate: &Rate) -> bool {
         let (force, change) = (self.force(loading, state), self.force_rate(loading, state, rate));
         let meeting = self.contacts.iter().map(|contact| loading.forces_meeting_at(*contact, state));
-        let round_off = ROUND_OFF * meeting.fold(0.0, f64::max);
-        let zero = round_off.max(AT_BOUND * size(&force));
+        let round_off = MEETING_FORCE_ROUNDING * meeting.fold(0.0, f64::max);
+        let zero = round_off.max(BOUND_TOLERANCE * size(&force));
         let unloaded = size(&force) <= round_off;
         let margin = self.margin(&force);
         if !unloaded && margin.abs() > zero {
             return margin > 0.0;
         }
         let slides = if unloaded { Vec::new() } else { self.ready(&force, zero) };
-        self.margin_of_slides(&slides, unloaded, zero, &change) >= -AT_BOUND * size(&change)
+        self.margin_of_slides(&slides, unloaded, zero, &change) >= -BOUND_TOLERANCE * size(&change)
     }
 
     /// The slides at whose friction bound a force lies.
     pub fn ready(&self, force: &Vector, zero: f64) -> Vec<(Slide, Drive)> {
-        if self.is_jammed() {
+        if cone_sum::is_jammed(self) {
             return Vec::new();
         }
         let pressed = |drive: &Drive| drive.normals[0].max(drive.normals[1]) > zero;
@@ -297,7 +289,7 @@ impl Pocket {
     pub fn margin_of_rate(&self, force: &Vector, unloaded: bool, zero: f64, rate: &Vector) -> f64 {
         let slides = if unloaded { Vec::new() } else { self.ready(force, zero) };
         let margin = self.margin_of_slides(&slides, unloaded, zero, rate);
-        if unloaded { margin } else { margin.min(self.slope_at_bound(force, zero, rate)) }
+        if unloaded { margin } else { margin.min(cone_sum::slope_at_bound(self, force, zero, rate)) }
     }
 
     /// The margin of a rate of the force against sliding or leaving, where the slides `ready` are at their friction
@@ -306,7 +298,7 @@ impl Pocket {
         if unloaded {
             return self.margin(rate);
         }
-        let small = NONE * size(rate);
+        let small = NEGLIGIBLE_COMPONENT * size(rate);
         let drives = |(slide, drive): &(Slide, Drive)| match *slide {
             Slide::Edge { places, direction } => {
                 let forms = self.edge_forms(places, &direction);
@@ -332,7 +324,9 @@ impl Pocket {
     pub fn turns_off(&self, place: usize, direction: &Vector) -> Vec<Vector> {
         let across = cross(&self.frames[place].normal, direction);
         let grazes = |other: &usize| {
-            *other != place && self.free.len() == 3 && dot(&self.frames[*other].normal, direction).abs() <= SAME
+            *other != place
+                && self.free.len() == 3
+                && dot(&self.frames[*other].normal, direction).abs() <= PERPENDICULAR_COSINE
         };
         let form = |other: usize| scaled(&across, -dot(&self.frames[other].normal, &across));
         (0..self.contacts.len()).filter(grazes).map(form).collect()
@@ -352,7 +346,7 @@ impl Pocket {
     /// or at a slide, the only reactions possible there.
     pub fn share(&self, force: &Vector) -> Option<Vec<Vector>> {
         least_reactions(&self.cones(), &self.free, force)
-            .or_else(|| self.at_bound(force))
+            .or_else(|| cone_sum::at_bound(self, force))
             .or_else(|| self.resting(force))
             .or_else(|| self.parts(force))
     }
@@ -366,7 +360,8 @@ impl Pocket {
             let across = [cross(&b, &c), cross(&c, &a), cross(&a, &b)];
             let determinant = dot(&a, &across[0]);
             let normals = across.map(|across| dot(&across, force) / determinant);
-            let fits = determinant.abs() > INDEPENDENT && normals.iter().all(|normal| *normal >= -NONE * size(force));
+            let fits = determinant.abs() > INDEPENDENCE_SINE
+                && normals.iter().all(|normal| *normal >= -NEGLIGIBLE_COMPONENT * size(force));
             fits.then(|| {
                 let mut parts = vec![[0.0; 3]; count];
                 for (place, normal) in places.into_iter().zip(normals) {
@@ -394,7 +389,7 @@ impl Pocket {
         let drag: f64 =
             places.iter().zip(drive.normals).map(|(place, normal)| self.frictions[*place].bound(normal)).sum();
         let driving = -dot(&drive.direction, force);
-        if driving > drag + FLAT * size(force) {
+        if driving > drag + CONE_TOLERANCE * size(force) {
             return None;
         }
         let part = if drag > 0.0 { (driving / drag).min(1.0) } else { 0.0 };

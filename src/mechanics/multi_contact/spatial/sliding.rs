@@ -2,7 +2,7 @@
 
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
 use crate::mechanics::contact::{Frame, Mode, Reaction};
-use crate::mechanics::multi_contact::spatial::Pocket;
+use crate::mechanics::multi_contact::spatial::ContactGroup;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces::Corner;
 use crate::mechanics::problem::state::State;
@@ -59,8 +59,8 @@ impl Edge {
 }
 
 /// The slide of a node along one obstacle or the edge of two.
-struct PocketSlide {
-    /// Indices of the obstacles in the [`Pocket`].
+struct GroupSlide {
+    /// Indices of the obstacles in the [`ContactGroup`].
     places: Vec<usize>,
     /// Direction of the slide; zero without friction.
     direction: Vector,
@@ -68,113 +68,117 @@ struct PocketSlide {
     forms: Vec<Vector>,
 }
 
-impl Pocket {
-    /// The slide of the node in these modes of all contacts, if it slides.
-    fn sliding(&self, modes: &[Mode]) -> Option<PocketSlide> {
-        let active = |place: &usize| modes[self.contacts[*place]].is_active();
-        let places: Vec<usize> = (0..self.contacts.len()).filter(active).collect();
-        let mut direction = [0.0; 3];
-        for place in &places {
-            match modes[self.contacts[*place]] {
-                Mode::Slip { direction: along } if along != [0.0; 3] => direction = along,
-                Mode::Slip { .. } => {}
-                Mode::Free | Mode::Stick => return None,
-            }
+/// The slide of the node in these modes of all contacts, if it slides.
+fn slide_in(group: &ContactGroup, modes: &[Mode]) -> Option<GroupSlide> {
+    let active = |place: &usize| modes[group.contacts[*place]].is_active();
+    let places: Vec<usize> = (0..group.contacts.len()).filter(active).collect();
+    let mut direction = [0.0; 3];
+    for place in &places {
+        match modes[group.contacts[*place]] {
+            Mode::Slip { direction: along } if along != [0.0; 3] => direction = along,
+            Mode::Slip { .. } => {}
+            Mode::Free | Mode::Stick => return None,
         }
-        let forms = match places[..] {
-            [place] => vec![self.face_form(place)],
-            [first, second] if self.free.len() == 3 => {
-                let edge = unit(&cross(&self.normals[first], &self.normals[second]));
-                let along = if direction == [0.0; 3] { edge } else { direction };
-                self.edge_forms([first, second], &along).to_vec()
-            }
-            _ => return None,
-        };
-        Some(PocketSlide { places, direction, forms })
     }
-
-    /// The friction force on the node in these modes under a force.
-    pub fn drag_in(&self, modes: &[Mode], force: &Vector) -> f64 {
-        let Some(PocketSlide { places, forms, .. }) = self.sliding(modes) else { return 0.0 };
-        places.iter().zip(&forms).map(|(place, form)| self.frictions[*place].bound(dot(form, force))).sum()
-    }
-
-    /// The change, with a motion, of the forces of the obstacles along which the node slides, at given normal
-    /// reactions.
-    pub(crate) fn turning(
-        &self,
-        places: &[usize],
-        direction: &Vector,
-        normals: &[f64],
-        motion: &Vector,
-    ) -> Vec<Vector> {
-        let turned = |place: usize| self.frames[place].normal_change(motion);
-        let direction_turned = match places[..] {
-            [place] => scaled(&self.frames[place].normal, -dot(&turned(place), direction)),
-            [first, second] => {
-                let frames = [first, second].map(|place| self.frames[place]);
-                Edge::of(frames).change_along(direction, motion)
-            }
-            _ => [0.0; 3],
-        };
-        let of = |(place, normal): (&usize, &f64)| {
-            scaled(&self.frictions[*place].force_direction(&turned(*place), &direction_turned), *normal)
-        };
-        places.iter().zip(normals).map(of).collect()
-    }
-
-    /// The rates of the reactions of the obstacles along which the node slides, from the rate of their sum; empty where
-    /// the node does not slide.
-    pub fn rates_in(&self, modes: &[Mode], force: &Vector, rate: &Vector, motion: &Vector) -> Vec<(usize, Reaction)> {
-        let Some(PocketSlide { places, direction, forms }) = self.sliding(modes) else { return Vec::new() };
-        let normals: Vec<f64> = forms.iter().map(|form| dot(form, force)).collect();
-        let turning = self.turning(&places, &direction, &normals, motion);
-        let rest = turning.iter().fold(self.free_part(rate), |rest, turned| add(&rest, -1.0, &self.free_part(turned)));
-        let growing: Vec<f64> = forms.iter().map(|form| dot(form, &rest)).collect();
-        let mut parts = Vec::new();
-        for (k, place) in places.iter().enumerate() {
-            let normal_turned = scaled(&self.frames[*place].normal_change(motion), normals[k]);
-            let tangential = add(&turning[k], -1.0, &normal_turned);
-            let drag = -self.frictions[*place].bound(growing[k]);
-            let tangential = add(&tangential, drag, &direction);
-            parts.push((self.contacts[*place], Reaction { normal: growing[k], tangential }));
+    let forms = match places[..] {
+        [place] => vec![group.face_form(place)],
+        [first, second] if group.free.len() == 3 => {
+            let edge = unit(&cross(&group.normals[first], &group.normals[second]));
+            let along = if direction == [0.0; 3] { edge } else { direction };
+            group.edge_forms([first, second], &along).to_vec()
         }
-        if let [(_, only)] = &mut parts[..] {
-            // The component perpendicular to the direction turns the direction.
-            let normal = &self.frames[places[0]].normal;
-            let pressed = scaled(&self.normals[places[0]], only.normal);
-            let across = add(&add(&rest, -1.0, &pressed), -dot(&rest, &direction), &direction);
-            if self.frictions[places[0]].is_rough() {
-                only.tangential = add(&only.tangential, 1.0, &add(&across, -dot(&across, normal), normal));
-            }
+        _ => return None,
+    };
+    Some(GroupSlide { places, direction, forms })
+}
+
+/// The friction force on the node in these modes under a force.
+pub fn drag_in(group: &ContactGroup, modes: &[Mode], force: &Vector) -> f64 {
+    let Some(GroupSlide { places, forms, .. }) = slide_in(group, modes) else { return 0.0 };
+    places.iter().zip(&forms).map(|(place, form)| group.frictions[*place].bound(dot(form, force))).sum()
+}
+
+/// The change, with a motion, of the forces of the obstacles along which the node slides, at given normal
+/// reactions.
+pub(crate) fn turning(
+    group: &ContactGroup,
+    places: &[usize],
+    direction: &Vector,
+    normals: &[f64],
+    motion: &Vector,
+) -> Vec<Vector> {
+    let turned = |place: usize| group.frames[place].normal_change(motion);
+    let direction_turned = match places[..] {
+        [place] => scaled(&group.frames[place].normal, -dot(&turned(place), direction)),
+        [first, second] => {
+            let frames = [first, second].map(|place| group.frames[place]);
+            Edge::of(frames).change_along(direction, motion)
         }
-        parts
+        _ => [0.0; 3],
+    };
+    let of = |(place, normal): (&usize, &f64)| {
+        scaled(&group.frictions[*place].force_direction(&turned(*place), &direction_turned), *normal)
+    };
+    places.iter().zip(normals).map(of).collect()
+}
+
+/// The rates of the reactions of the obstacles along which the node slides, from the rate of their sum; empty where
+/// the node does not slide.
+pub fn rates_in(
+    group: &ContactGroup,
+    modes: &[Mode],
+    force: &Vector,
+    rate: &Vector,
+    motion: &Vector,
+) -> Vec<(usize, Reaction)> {
+    let Some(GroupSlide { places, direction, forms }) = slide_in(group, modes) else { return Vec::new() };
+    let normals: Vec<f64> = forms.iter().map(|form| dot(form, force)).collect();
+    let turning = turning(group, &places, &direction, &normals, motion);
+    let rest = turning.iter().fold(group.free_part(rate), |rest, turned| add(&rest, -1.0, &group.free_part(turned)));
+    let growing: Vec<f64> = forms.iter().map(|form| dot(form, &rest)).collect();
+    let mut parts = Vec::new();
+    for (k, place) in places.iter().enumerate() {
+        let normal_turned = scaled(&group.frames[*place].normal_change(motion), normals[k]);
+        let tangential = add(&turning[k], -1.0, &normal_turned);
+        let drag = -group.frictions[*place].bound(growing[k]);
+        let tangential = add(&tangential, drag, &direction);
+        parts.push((group.contacts[*place], Reaction { normal: growing[k], tangential }));
     }
+    if let [(_, only)] = &mut parts[..] {
+        // The component perpendicular to the direction turns the direction.
+        let normal = &group.frames[places[0]].normal;
+        let pressed = scaled(&group.normals[places[0]], only.normal);
+        let across = add(&add(&rest, -1.0, &pressed), -dot(&rest, &direction), &direction);
+        if group.frictions[places[0]].is_rough() {
+            only.tangential = add(&only.tangential, 1.0, &add(&across, -dot(&across, normal), normal));
+        }
+    }
+    parts
 }
 
 /// The reactions of the obstacles along which alone a node slides further, where they take over the reactions of
 /// others; empty where there is nothing to take over.
 pub fn taken_over(loading: Loading<'_>, corner: &Corner, modes: &[Mode], state: &State) -> Vec<(usize, Reaction)> {
-    let pocket = Pocket::new(loading, &corner.contacts, state);
-    let Some(PocketSlide { places, direction, forms }) = pocket.sliding(modes) else { return Vec::new() };
+    let group = ContactGroup::new(loading, &corner.contacts, state);
+    let Some(GroupSlide { places, direction, forms }) = slide_in(&group, modes) else { return Vec::new() };
     let slides_alone = |place: usize| places.contains(&place);
     let had = |place: usize| state.reactions[corner.contacts[place]] != Reaction::default();
-    let rough = places.iter().any(|place| pocket.frictions[*place].is_rough());
+    let rough = places.iter().any(|place| group.frictions[*place].is_rough());
     let takes_over = (0..corner.contacts.len()).any(|place| had(place) && !slides_alone(place));
     if !takes_over && (!rough || places.len() == 1) {
         return Vec::new();
     }
-    let force = pocket.force(loading, state);
+    let force = group.force(loading, state);
     let mut rest = force;
     let mut parts = Vec::new();
     for (place, form) in places.iter().zip(&forms) {
         let normal = dot(form, &force);
-        let tangential = pocket.frictions[*place].traction(normal, &direction);
-        rest = add(&add(&rest, -normal, &pocket.normals[*place]), -1.0, &tangential);
+        let tangential = group.frictions[*place].traction(normal, &direction);
+        rest = add(&add(&rest, -normal, &group.normals[*place]), -1.0, &tangential);
         parts.push((*place, Reaction { normal, tangential }));
     }
     // The remainder comes from the location of the event; the sum is preserved.
-    if let Some((_, part)) = parts.iter_mut().find(|(place, _)| pocket.frictions[*place].is_rough()) {
+    if let Some((_, part)) = parts.iter_mut().find(|(place, _)| group.frictions[*place].is_rough()) {
         part.tangential = add(&part.tangential, 1.0, &rest);
     }
     parts.into_iter().map(|(place, part)| (corner.contacts[place], part)).collect()

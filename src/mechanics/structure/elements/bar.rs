@@ -124,12 +124,14 @@ impl FiniteElement for Bar {
         &self.nodes
     }
 
+    #[inline(always)]
     fn energy(&self, displacement: &[f64]) -> f64 {
         let elongation = self.deformed(displacement).elongation;
         let (strain, _, _) = self.response(elongation);
         0.5 * self.axial_stiffness * self.rest_length * strain * strain + self.prestress * elongation
     }
 
+    #[inline(always)]
     fn write_force(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
         let deformed = self.deformed(displacement);
         let (_, axial, _) = self.response(deformed.elongation);
@@ -140,6 +142,7 @@ impl FiniteElement for Bar {
         axial.abs()
     }
 
+    #[inline(always)]
     fn write_stiffness(&self, displacement: &[f64], stiffness: &mut [f64]) {
         let deformed = self.deformed(displacement);
         let (_, axial, slope) = self.response(deformed.elongation);
@@ -148,6 +151,7 @@ impl FiniteElement for Bar {
 
     /// The axial force and its change under displacements of this size. The stiffness is bounded, so that the loss of
     /// direction of a bar that shrinks to a point does not count: there the forces are lost, which is no equilibrium.
+    #[inline(always)]
     fn write_force_sizes(&self, displacement: &[f64], least: f64, sizes: &mut [f64]) {
         let deformed = self.deformed(displacement);
         let (_, axial, slope) = self.response(deformed.elongation);
@@ -177,6 +181,7 @@ impl FiniteElement for Bar {
     }
 
     /// Writes `(N/L)(I - d dᵀ)` alone.
+    #[inline(always)]
     fn write_stiffness_across(&self, displacement: &[f64], stiffness: &mut [f64]) {
         let deformed = self.deformed(displacement);
         let (_, axial, _) = self.response(deformed.elongation);

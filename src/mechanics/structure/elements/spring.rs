@@ -54,6 +54,7 @@ impl FiniteElement for Spring {
         0.5 * relative.iter().zip(&forces).map(|(motion, force)| motion * force).sum::<f64>()
     }
 
+    #[inline(always)]
     fn write_force(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
         let forces = self.forces(&self.relative(displacement));
         let (own, other) = force.split_at_mut(forces.len());
@@ -62,6 +63,7 @@ impl FiniteElement for Spring {
         forces.iter().fold(0.0, |largest, value| largest.max(value.abs()))
     }
 
+    #[inline(always)]
     fn write_stiffness(&self, displacement: &[f64], stiffness: &mut [f64]) {
         let size = displacement.len();
         let dimension = size / self.nodes.len();
@@ -74,6 +76,7 @@ impl FiniteElement for Spring {
     }
 
     /// The force due to displacements of this size.
+    #[inline(always)]
     fn write_force_sizes(&self, displacement: &[f64], least: f64, sizes: &mut [f64]) {
         let dimension = displacement.len() / self.nodes.len();
         let (own, other) = displacement.split_at(dimension);
@@ -121,6 +124,7 @@ impl FiniteElement for Spring {
             .collect()
     }
 
+    #[inline(always)]
     fn write_stiffness_across(&self, displacement: &[f64], stiffness: &mut [f64]) {
         if self.has_two_nodes() {
             stiffness.fill(0.0);
