@@ -6,9 +6,9 @@ pub(crate) mod scalar_root;
 pub mod sparse;
 
 use crate::resources::budget;
-pub use dense::assembly::Sink;
-pub use dense::factorisation::{Factorisation, Stiffener};
+pub use dense::dense_lu::{Factorisation, Stiffener};
 pub use dense::inertia::{Inertia, inertia};
+pub use dense::matrix_sink::Sink;
 pub use dense::solve_counters::{factorisations, solves};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
@@ -69,7 +69,7 @@ pub fn determinant(matrix: DMatrix<f64>) -> Option<Determinant> {
         return None;
     }
     let size = matrix.nrows();
-    let (pivots, mut sign): (DVector<f64>, f64) = if size > dense::factorisation::MOST_AT_ONCE {
+    let (pivots, mut sign): (DVector<f64>, f64) = if size > dense::dense_lu::MOST_AT_ONCE {
         let lu = dense::interruptible_lu::LargeLu::new(matrix, DVector::zeros(0));
         (DVector::from_iterator(size, lu.pivots()), lu.exchange_sign())
     } else {

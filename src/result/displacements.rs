@@ -1,4 +1,4 @@
-//! Displacements by the names of their nodes, in one piece: the rows of a path share the names.
+//! Displacements keyed by the names of the nodes, in one contiguous array: the rows of a path share the names.
 
 use indexmap::IndexMap;
 use serde::de::{MapAccess, Visitor};

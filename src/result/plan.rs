@@ -1,4 +1,4 @@
-//! What a scene needs and what is left out, said before anything is solved.
+//! What a scene needs and what is omitted, reported before the solve.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! What is known of a path when it has ended.
+//! Summary of a finished path.
 
 use crate::result::stop_reason::StopReason;
 use serde::{Deserialize, Serialize};

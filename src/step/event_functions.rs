@@ -8,23 +8,23 @@
 //! Between two points each quantity is also interpolated by a cubic Hermite polynomial, so that a dip below zero inside
 //! the step is detected.
 
-use crate::algebra::dense::assembly::Sink;
+use crate::algebra::dense::matrix_sink::Sink;
 use crate::mechanics::contact::vector::{Vector, add, direction_of, dot, scaled};
 use crate::mechanics::contact::{Mode, Sliding};
 use crate::mechanics::equations::closing_equation::ClosingEquation;
-use crate::mechanics::equations::stage_criteria::End;
+use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::equations::{ModeSystem, matrix};
-use crate::mechanics::multi_contact::contact_status::none_from_cone;
+use crate::mechanics::multi_contact::changeable_contacts::none_from_cone;
 use crate::mechanics::multi_contact::planar;
 use crate::mechanics::multi_contact::spatial::ContactGroup;
 use crate::mechanics::multi_contact::spatial::cone_sum;
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::node_forces;
+use crate::mechanics::problem::node_contact_forces;
 use crate::mechanics::problem::state::{Rate, State};
 
 /// An event function; negative values mean that the event has been passed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Watch {
+pub enum EventFunction {
     Gap(usize),
     Normal(usize),
     /// `μ r_n + side r_t` along a line, `μ r_n - |r_t|` in a plane (side 0).
@@ -58,46 +58,46 @@ pub enum Watch {
 }
 
 /// The event functions that may end a mode continued from a state along a rate.
-pub fn of_mode(loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate) -> Vec<Watch> {
+pub fn of_mode(loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate) -> Vec<EventFunction> {
     // Capacity for those of each contact, of the load and of the ends of the stage.
-    let mut watches = Vec::with_capacity(2 * modes.len() + 2);
+    let mut event_functions = Vec::with_capacity(2 * modes.len() + 2);
     let mut together = Vec::new();
     for (corner, data) in loading.corners.iter().enumerate() {
         let before = together.len();
         together.extend(data.holding(modes));
         if together.len() > before {
-            if node_forces::is_in_plane(loading, data) {
-                watches.extend([0, 1].map(|side| Watch::Facet { corner, side }));
+            if node_contact_forces::is_in_plane(loading, data) {
+                event_functions.extend([0, 1].map(|side| EventFunction::Facet { corner, side }));
             } else if ContactGroup::new(loading, &together[before..], state).keeps(loading, state, rate) {
-                watches.push(Watch::Slide { corner });
+                event_functions.push(EventFunction::Slide { corner });
             } else {
-                watches.extend([Watch::Hold { corner }, Watch::Return { corner }]);
+                event_functions.extend([EventFunction::Hold { corner }, EventFunction::Return { corner }]);
             }
         }
     }
     for (contact, mode) in modes.iter().enumerate() {
         match mode {
             Mode::Stick if together.contains(&contact) => {}
-            Mode::Free => watches.push(Watch::Gap(contact)),
+            Mode::Free => event_functions.push(EventFunction::Gap(contact)),
             Mode::Stick if loading.contacts[contact].sliding == Sliding::Plane => {
-                watches.push(Watch::Cone { contact, side: 0.0 });
+                event_functions.push(EventFunction::Cone { contact, side: 0.0 });
             }
-            Mode::Stick => watches.extend([1.0, -1.0].map(|side| Watch::Cone { contact, side })),
+            Mode::Stick => event_functions.extend([1.0, -1.0].map(|side| EventFunction::Cone { contact, side })),
             Mode::Slip { .. } => {
                 // At a node that sticks to another obstacle, the normal reaction is only a share of the total force.
                 if !together.contains(&contact) {
-                    watches.push(Watch::Normal(contact));
+                    event_functions.push(EventFunction::Normal(contact));
                 }
                 if loading.contacts[contact].tangents() > 0 {
-                    watches.push(Watch::Sliding(contact));
+                    event_functions.push(EventFunction::Sliding(contact));
                 }
             }
         }
     }
-    watches
+    event_functions
 }
 
-impl Watch {
+impl EventFunction {
     /// Whether a contact's mode ends where the quantity is zero.
     pub fn is_of_contact(self) -> bool {
         match self {
@@ -139,7 +139,7 @@ impl Watch {
                 let Some(inward) = planar::sector(loading, &holding, |contact| modes[contact], state).inward else {
                     return f64::INFINITY;
                 };
-                dot(&inward[side], &node_forces::total_force(loading, holding.into_iter(), state))
+                dot(&inward[side], &node_contact_forces::total_force(loading, holding.into_iter(), state))
             }
             Self::Slide { corner } | Self::Hold { corner } | Self::Return { corner } => {
                 let group = group(loading, corner, modes, state);
@@ -283,7 +283,7 @@ impl Watch {
 /// The closing equation of a zero: an event function with a slope, over its scale.
 #[derive(Debug, Clone, Copy)]
 pub struct EventZero<'a> {
-    pub watch: Watch,
+    pub event_function: EventFunction,
     pub scale: f64,
     /// The approximate direction of the path.
     pub towards: &'a Rate,
@@ -291,7 +291,7 @@ pub struct EventZero<'a> {
 
 impl ClosingEquation for EventZero<'_> {
     fn value(&self, system: &ModeSystem<'_>, state: &State) -> f64 {
-        self.watch.value(system.loading, system.modes, state, self.towards) / self.scale
+        self.event_function.value(system.loading, system.modes, state, self.towards) / self.scale
     }
 
     fn write_gradient(&self, system: &ModeSystem<'_>, _state: &State, matrix: &mut dyn Sink) {
@@ -299,7 +299,7 @@ impl ClosingEquation for EventZero<'_> {
     }
 
     fn slope_beside_row(&self, system: &ModeSystem<'_>, state: &State, rate: &Rate) -> Option<f64> {
-        self.watch.slope(system.loading, system.modes, state, rate).map(|slope| slope / self.scale)
+        self.event_function.slope(system.loading, system.modes, state, rate).map(|slope| slope / self.scale)
     }
 
     fn has_slope_beside_row(&self) -> bool {

@@ -8,15 +8,15 @@
 use crate::algebra::SystemFactorisation;
 use crate::algebra::scalar_root::find_root;
 use crate::mechanics::equations::ModeSystem;
-use crate::mechanics::equations::solution::Failure;
-use crate::mechanics::equations::stage_criteria::End;
+use crate::mechanics::equations::corrected_point::Failure;
+use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::state::State;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
 use crate::step::corrector::tolerances::ACCEPTED_RESIDUAL;
-use crate::step::event_functions::Watch;
+use crate::step::event_functions::EventFunction;
 use crate::step::interpolation::{Knot, NewtonPolynomial, PlacedPoint, between, placed, unit};
-use crate::step::segment::{Reached, Refused, StepStart};
+use crate::step::mode_step::{Reached, Refused, StepStart};
 use crate::step::tolerances::{
     EVENT_TOLERANCE, LARGEST_DEVIATION, LARGEST_SLOPE_RATIO, LOCATED_VALUE, LONGEST_STRAIGHT_STEP, OFFSET_MULTIPLE,
     POSITION_ROUND_OFF_MULTIPLE, SLOWEST_DECREASE, SMALLEST_SEPARATION, STRAIGHT_STEP_MULTIPLE,
@@ -131,19 +131,23 @@ impl Bracket {
     }
 }
 
-fn sample(start: &StepStart<'_>, watch: Watch, at: &PlacedPoint) -> Sample {
-    let value = watch.value(start.loading, start.modes, &at.state, &at.rate);
-    let whole = watch.whole(start.loading, start.modes, start.state, &at.state);
+fn sample(start: &StepStart<'_>, event_function: EventFunction, at: &PlacedPoint) -> Sample {
+    let value = event_function.value(start.loading, start.modes, &at.state, &at.rate);
+    let whole = event_function.whole(start.loading, start.modes, start.state, &at.state);
     let knot = match whole {
         Some(whole) => Knot { place: at.place, value: whole, slope: Some(value) },
-        None => Knot { place: at.place, value, slope: watch.slope(start.loading, start.modes, &at.state, &at.rate) },
+        None => Knot {
+            place: at.place,
+            value,
+            slope: event_function.slope(start.loading, start.modes, &at.state, &at.rate),
+        },
     };
     Sample { value, knot, is_slope: whole.is_some() }
 }
 
 /// The bracket of the points between which a quantity first becomes negative.
-fn bracket(start: &StepStart<'_>, watch: Watch, stretch: &StepPoints, zero: f64) -> Option<Bracket> {
-    let samples: Vec<Sample> = stretch.placed().map(|placed| sample(start, watch, placed)).collect();
+fn bracket(start: &StepStart<'_>, event_function: EventFunction, stretch: &StepPoints, zero: f64) -> Option<Bracket> {
+    let samples: Vec<Sample> = stretch.placed().map(|placed| sample(start, event_function, placed)).collect();
     let end = samples.iter().skip(1).position(|sample| sample.value < -zero)? + 1;
     Some(Bracket { samples, end })
 }
@@ -151,16 +155,16 @@ fn bracket(start: &StepStart<'_>, watch: Watch, stretch: &StepPoints, zero: f64)
 /// The quantity that falls to zero first, among those that are negative at the last point.
 pub(crate) fn earliest<'w>(
     start: &StepStart<'_>,
-    passed: &'w [Watch],
+    passed: &'w [EventFunction],
     stretch: &StepPoints,
-    zero: impl Fn(Watch) -> f64,
-) -> Option<&'w Watch> {
-    let place = |watch: &Watch| {
-        let estimate = bracket(start, *watch, stretch, zero(*watch))?.estimate(zero(*watch));
+    zero: impl Fn(EventFunction) -> f64,
+) -> Option<&'w EventFunction> {
+    let place = |event_function: &EventFunction| {
+        let estimate = bracket(start, *event_function, stretch, zero(*event_function))?.estimate(zero(*event_function));
         Some(estimate.unwrap_or(0.0))
     };
     passed.iter().min_by(|a, b| {
-        let [a, b] = [a, b].map(|watch| place(watch).unwrap_or(f64::INFINITY));
+        let [a, b] = [a, b].map(|event_function| place(event_function).unwrap_or(f64::INFINITY));
         a.total_cmp(&b)
     })
 }
@@ -168,7 +172,7 @@ pub(crate) fn earliest<'w>(
 /// The first zero of a quantity that is negative at the last point; values up to `zero` count as zero.
 pub(crate) fn locate(
     start: &StepStart<'_>,
-    watch: Watch,
+    event_function: EventFunction,
     stretch: &mut StepPoints,
     zero: f64,
     work: &mut Work,
@@ -178,15 +182,15 @@ pub(crate) fn locate(
     let reach = last.0.state.displacement.iter().fold(last.0.state.load.abs(), |most, value| most.max(value.abs()));
     let same_place = |place: f64| POSITION_ROUND_OFF_MULTIPLE * f64::EPSILON * (place + reach);
     let located = zero * (LOCATED_VALUE / EVENT_TOLERANCE);
-    if let Watch::End(end) = watch
-        && let Some(bracket) = bracket(start, watch, stretch, 0.0)
+    if let EventFunction::End(end) = event_function
+        && let Some(bracket) = bracket(start, event_function, stretch, 0.0)
         && let Some(found) = meet(start, end, &bracket, stretch, work)
     {
         return Ok(found);
     }
     let (mut nearest, mut halve) = (f64::INFINITY, false);
     for _ in 0..MOST_POINTS {
-        let bracket = bracket(start, watch, stretch, located).ok_or(unclear)?;
+        let bracket = bracket(start, event_function, stretch, located).ok_or(unclear)?;
         let [first, second] = bracket.ends();
         if !(first.value.is_finite() && second.value.is_finite()) {
             return Err(unclear);
@@ -200,7 +204,7 @@ pub(crate) fn locate(
             Some(place) => place,
             None => {
                 // A contact that has just changed starts at zero: the search begins a little further on.
-                begin_further_on(start, watch, stretch, zero, work)?;
+                begin_further_on(start, event_function, stretch, zero, work)?;
                 continue;
             }
         };
@@ -210,17 +214,17 @@ pub(crate) fn locate(
         }
         // Exactly at this position the equations may be singular to the last digit.
         let beside = (place - OFFSET_MULTIPLE * same_place(place)).max(0.5 * place);
-        let found = stretch.reach(start, place, work).or_else(|refused| match watch {
+        let found = stretch.reach(start, place, work).or_else(|refused| match event_function {
             // A bound at a singular point ends the stage there: see `stage_end`.
-            Watch::End(_) => Err(refused),
+            EventFunction::End(_) => Err(refused),
             _ => stretch.reach(start, beside, work),
         })?;
-        let value = watch.value(start.loading, start.modes, &found.corrected.state, &found.rate);
+        let value = event_function.value(start.loading, start.modes, &found.corrected.state, &found.rate);
         if value.abs() <= located {
             return Ok(found);
         }
         if value.abs() <= STRAIGHT_STEP_MULTIPLE * zero
-            && let Some(exact) = by_series(start, watch, stretch, zero, &found)
+            && let Some(exact) = by_series(start, event_function, stretch, zero, &found)
         {
             return Ok(exact);
         }
@@ -235,10 +239,15 @@ pub(crate) fn locate(
 }
 
 /// Whether a quantity that is zero at a point falls through zero there.
-pub(crate) fn falls_through(start: &StepStart<'_>, watch: Watch, stretch: &StepPoints, zero: &Reached) -> bool {
+pub(crate) fn falls_through(
+    start: &StepStart<'_>,
+    event_function: EventFunction,
+    stretch: &StepPoints,
+    zero: &Reached,
+) -> bool {
     let away = |placed: &&PlacedPoint| (placed.place - zero.step).abs() > SMALLEST_SEPARATION * zero.step;
     let sampled = |placed: &PlacedPoint| {
-        (placed.place - zero.step, watch.value(start.loading, start.modes, &placed.state, &placed.rate))
+        (placed.place - zero.step, event_function.value(start.loading, start.modes, &placed.state, &placed.rate))
     };
     let before = stretch.placed().filter(away).filter(|placed| placed.place < zero.step).last();
     let after = stretch.placed().filter(away).find(|placed| placed.place > zero.step);
@@ -248,7 +257,7 @@ pub(crate) fn falls_through(start: &StepStart<'_>, watch: Watch, stretch: &StepP
 /// The zero at a straight step from a point close to it; `None` where the error of the step is not negligible.
 fn by_series(
     start: &StepStart<'_>,
-    watch: Watch,
+    event_function: EventFunction,
     stretch: &StepPoints,
     zero: f64,
     found: &Reached,
@@ -257,7 +266,7 @@ fn by_series(
     if system.has_tracks() {
         return None;
     }
-    let bracket = bracket(start, watch, stretch, 0.0)?;
+    let bracket = bracket(start, event_function, stretch, 0.0)?;
     let place = bracket.estimate(zero)?;
     let [left, right] = [bracket.end - 1, bracket.end].map(|index| stretch.placed().nth(index));
     let (left, right) = (left?, right?);
@@ -272,7 +281,7 @@ fn by_series(
     rate.add(&far.rate, way / width);
     let state = near.state.advanced(&near.rate, way);
     let rate = unit(&rate);
-    let value = watch.value(start.loading, start.modes, &state, &rate).abs();
+    let value = event_function.value(start.loading, start.modes, &state, &rate).abs();
     let mut corrected = newton::judged(&system, state, start.force_scale);
     if value > zero || corrected.residual > ACCEPTED_RESIDUAL {
         return None;
@@ -304,7 +313,7 @@ fn meet(
 /// Adds a point past the start at which a quantity that is zero at the start is positive.
 fn begin_further_on(
     start: &StepStart<'_>,
-    watch: Watch,
+    event_function: EventFunction,
     stretch: &mut StepPoints,
     zero: f64,
     work: &mut Work,
@@ -312,11 +321,11 @@ fn begin_further_on(
     let first = stretch.points[0].0.place;
     for part in FURTHER_ON {
         let near = stretch.reach(start, part * first, work)?;
-        if watch.value(start.loading, start.modes, &near.corrected.state, &near.rate) > zero {
+        if event_function.value(start.loading, start.modes, &near.corrected.state, &near.rate) > zero {
             return Ok(());
         }
     }
-    Err(Refused::AtStart(watch))
+    Err(Refused::AtStart(event_function))
 }
 
 /// Whether a quantity that is zero at position 0 decreases through zero and does not only touch it: the secants to the

@@ -2,7 +2,7 @@
 //! polynomials through values and slopes of one quantity.
 
 use crate::mechanics::problem::state::{Rate, State};
-use crate::step::segment::{Reached, StepStart};
+use crate::step::mode_step::{Reached, StepStart};
 use crate::step::tolerances::LONGEST_EXTRAPOLATION;
 use serde::{Deserialize, Serialize};
 

@@ -3,7 +3,7 @@
 //! | module | contents |
 //! |---|---|
 //! | [`corrector`] | Newton's method, the direction at its end, and the factorisations that they share |
-//! | `segment` | a step along the mode, ended early by the first event |
+//! | `mode_step` | a step along the mode, ended early by the first event |
 //! | `event_functions` | quantities that must not become negative while the mode lasts |
 //! | `event_location` | the location of their zeros |
 //! | `interpolation` | interpolation between the points of a step |
@@ -15,6 +15,6 @@ pub(crate) mod event_functions;
 pub(crate) mod event_location;
 pub(crate) mod increment_mpec;
 pub(crate) mod interpolation;
-pub(crate) mod segment;
+pub(crate) mod mode_step;
 pub(crate) mod singular_step;
 pub(crate) mod tolerances;

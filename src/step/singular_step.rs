@@ -7,12 +7,12 @@
 //! (another part slips), the equations are solved with the undetermined motions suppressed.
 
 use crate::mechanics::equations::closing_equation::ClosingEquation;
-use crate::mechanics::equations::{ModeSystem, deflation};
+use crate::mechanics::equations::{ModeSystem, null_motion_suppression};
 use crate::mechanics::problem::state::State;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
 use crate::step::corrector::tolerances::ACCEPTED_RESIDUAL;
-use crate::step::segment::{Reached, StepStart};
+use crate::step::mode_step::{Reached, StepStart};
 
 /// The point straight ahead, where it satisfies the equations.
 pub(crate) fn held_straight(
@@ -44,12 +44,12 @@ pub(crate) fn held_across(
         return None;
     }
     let mut system = ModeSystem::new(start.loading, start.modes, start.state);
-    if !deflation::suppress_open_motions(&mut system, start.state, start.rate) {
+    if !null_motion_suppression::suppress_open_motions(&mut system, start.state, start.rate) {
         return None;
     }
     let iterate = system.iterate(guess.clone());
     let corrected = newton::correct_from(&system, iterate, closing, start.force_scale, &mut None, work).ok()?;
-    if !deflation::is_still_open(&system, &corrected.state) {
+    if !null_motion_suppression::is_still_open(&system, &corrected.state) {
         // Only the start is singular.
         return None;
     }

@@ -3,7 +3,8 @@
 
 use arcslip::complementarity::mpec::program::cone;
 use arcslip::complementarity::mpec::{
-    self, ConeActivity, Problem, ProgramSolution, Settings, SolveStatus, SparseRows, StationarityKind, semismooth,
+    self, ConeActivity, Problem, ProgramSolution, Settings, SolveStatus, SparseRows, StationarityKind,
+    semismooth_newton,
 };
 use arcslip::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
@@ -320,7 +321,7 @@ fn what_is_claimed_of_biactive_pairs_is_what_was_examined() {
 fn the_semismooth_method_converges_quadratically_to_round_off() {
     let stiffness = Matrix3::new(2.0, 0.3, -0.2, 0.3, 1.0, -0.4, -0.2, -0.4, 3.0);
     let mass = Mass::given(stiffness, 0.4, [1.0, 0.5]);
-    let end = semismooth::polish(&mass, &from_rest(&mass), None, &CancelFlag::default()).expect("finite");
+    let end = semismooth_newton::polish(&mass, &from_rest(&mass), None, &CancelFlag::default()).expect("finite");
     assert!(end.is_converged, "{:?}", end.residuals);
     let last = end.residuals.last().copied().unwrap_or(f64::INFINITY);
     assert!(last < 1e-14, "{:?}", end.residuals);

@@ -1,7 +1,7 @@
 //! Dense LU factorisation with partial pivoting of large matrices, column by column, with a budget check before each
 //! column.
 
-use crate::algebra::dense::lu_factors::DenseFactors;
+use crate::algebra::dense::dense_factors::DenseFactors;
 use crate::resources::budget::{self, Taken};
 use nalgebra::{DMatrix, DVector};
 

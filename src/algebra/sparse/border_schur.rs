@@ -1,4 +1,4 @@
-//! Block elimination of the remaining borders.
+//! Solves a bordered system by the Schur complement of its borders, with `K` factorised.
 
 use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;

@@ -9,13 +9,13 @@
 //! | `border_schur` | the dense Schur complement of the remaining borders |
 //! | `block_elimination` | both eliminations combined, with the factorised interior |
 //! | `fallback_lu` | LU of the whole matrix, where block elimination fails |
-//! | [`factorisation`] | the choice between block elimination and LU, with iterative refinement on the whole system |
+//! | [`bordered_factorisation`] | the choice between block elimination and LU, with iterative refinement on the whole system |
 //! | `preconditioned_refinement` | solutions with the factorisation of a nearby matrix |
 
 pub(crate) mod block_elimination;
 pub(crate) mod border_schur;
+pub mod bordered_factorisation;
 pub mod constrained_nodes;
-pub mod factorisation;
 pub mod factors;
 pub(crate) mod fallback_lu;
 pub(crate) mod nodal_elimination;
@@ -24,8 +24,8 @@ pub(crate) mod preconditioned_refinement;
 mod tests;
 pub(crate) mod tolerances;
 
-pub use factorisation::{SparseFactorisation, held_inertia};
+pub use bordered_factorisation::{SparseFactorisation, held_inertia};
 pub use factors::bordered_matrix::Bordered;
+pub use factors::elimination_order::allow_factor;
 pub use factors::pattern::Pattern;
-pub use factors::symbolic::allow_factor;
 pub use nodal_elimination::{Holding, Holdings, IndexList};

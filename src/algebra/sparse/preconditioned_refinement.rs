@@ -5,7 +5,7 @@
 //! whole of `G`: where it is small, no eigenvalue changes sign between the two matrices, and their determinants have
 //! the same sign.
 
-use crate::algebra::sparse::factorisation::{SparseFactorisation, backward_error};
+use crate::algebra::sparse::bordered_factorisation::{SparseFactorisation, backward_error};
 use crate::algebra::sparse::factors::bordered_matrix::Bordered;
 use crate::algebra::sparse::tolerances::{
     CONVERGED_BACKWARD_ERROR, EXTRAPOLATION_MARGIN, FIRST_CONTRACTION, STAGNATED_BACKWARD_ERROR,

@@ -1,6 +1,6 @@
 //! The sparse factorisation against the dense factorisation, on reproducible pseudo-random systems.
 
-use crate::algebra::dense::assembly::Sink;
+use crate::algebra::dense::matrix_sink::Sink;
 use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;
 use crate::algebra::sparse::nodal_elimination::Friction;

@@ -6,11 +6,11 @@
 //! | `locate` | location of the point with dense or sparse matrices, and of folded singularities of slip |
 //! | `branch_directions` | the branches that leave the point |
 //! | `simultaneous_limit_points` | limit points shared by uncoupled parts |
-//! | `bound_at_singularity` | a bound of the stage at or near such a point |
+//! | `stage_end_near_singular_point` | a bound of the stage at or near such a point |
 
-pub(crate) mod bound_at_singularity;
 pub(crate) mod branch_directions;
 pub(crate) mod locate;
 pub(crate) mod simultaneous_limit_points;
 pub(crate) mod singularity;
+pub(crate) mod stage_end_near_singular_point;
 pub(crate) mod tolerances;

@@ -24,21 +24,21 @@ use crate::branching::bifurcation::locate::WIDTHS;
 use crate::branching::bifurcation::singularity::tolerances::SINGULAR_PIVOT;
 use crate::branching::bifurcation::tolerances::{COUPLING_TOLERANCE, DIFFERENCE_STEP, INCOMING_COSINE, RESTING_SPEED};
 use crate::branching::directions::candidate::CandidateDirection;
-use crate::branching::directions::choice::{DirectionChoice, potential_rate, sign_of};
+use crate::branching::directions::feasible_direction::{DirectionChoice, potential_rate, sign_of};
 use crate::branching::directions::trial_step::confirm_by;
-use crate::complementarity::rates::combinations::{combinations, count};
+use crate::complementarity::rates::cartesian_product::{combinations, count};
 use crate::mechanics::contact::{Mode, Reaction, vector};
 use crate::mechanics::equations::scaled_rows::scaled_rows;
 use crate::mechanics::equations::{ModeSystem, matrix, rate_recovery};
-use crate::mechanics::multi_contact::contact_status::Standing;
+use crate::mechanics::multi_contact::changeable_contacts::Standing;
 use crate::mechanics::problem::state::{Rate, State, dot};
 use crate::step::corrector::cached_factorisation::CachedFactorisation;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
 use crate::step::corrector::tolerances::ACCEPTED_RESIDUAL;
-use crate::step::event_functions::Watch;
+use crate::step::event_functions::EventFunction;
 use crate::step::interpolation::{PlacedPoint, between, placed, unit};
-use crate::step::segment::{Reached, StepStart};
+use crate::step::mode_step::{Reached, StepStart};
 use nalgebra::{DMatrix, DVector};
 
 /// Lengths of the trial steps.
@@ -46,16 +46,21 @@ const TRIALS: [f64; 3] = [1e-3, 1e-2, 1e-4];
 
 /// The limit point, shared by several motions, of a step that ends past it, with their number in `motions`; `None` for
 /// any other limit point.
-pub(crate) fn locate(start: &StepStart<'_>, watch: Watch, end: &Reached, work: &mut Work) -> Option<Box<Reached>> {
+pub(crate) fn locate(
+    start: &StepStart<'_>,
+    event_function: EventFunction,
+    end: &Reached,
+    work: &mut Work,
+) -> Option<Box<Reached>> {
     let system = ModeSystem::new(start.loading, start.modes, start.state);
     if system.has_tracks() || !start.loading.structure.allows_dense() {
         return None;
     }
-    let value = |placed: &PlacedPoint| watch.value(start.loading, start.modes, &placed.state, &placed.rate);
+    let value = |placed: &PlacedPoint| event_function.value(start.loading, start.modes, &placed.state, &placed.rate);
     let root_between = |left: &PlacedPoint, right: &PlacedPoint| {
         let at = |place: f64| {
             let (state, rate) = between(left, right, place);
-            Some(watch.value(start.loading, start.modes, &state, &unit(&rate)))
+            Some(event_function.value(start.loading, start.modes, &state, &unit(&rate)))
         };
         let (first, last) = (value(left), value(right));
         (first > 0.0 && last < 0.0).then(|| find_root(at, (left.place, first), (right.place, last), 0.0))?

@@ -15,7 +15,7 @@
 //! Press 1992, section 3.3): the contact sticks, and no trial step is needed.
 
 use crate::branching::directions::candidate::CandidateDirection;
-use crate::branching::directions::choice::DirectionChoice;
+use crate::branching::directions::feasible_direction::DirectionChoice;
 use crate::branching::directions::tolerances::{COSINE_TOLERANCE, RESTING_SPEED};
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::dot;
@@ -75,9 +75,9 @@ impl<'a> Incoming<'a> {
 #[cfg(test)]
 mod tests {
     use super::Incoming;
-    use crate::branching::directions::choice::PriorMotion;
-    use crate::branching::selection::decision::list;
+    use crate::branching::directions::feasible_direction::PriorMotion;
     use crate::branching::selection::enumeration::directions;
+    use crate::branching::selection::selection_rule::list;
     use crate::check::scenes::of_any_size::row_of_bars;
     use crate::continuation::path::iterator::Path;
     use crate::continuation::scene::Scene;

@@ -6,7 +6,7 @@ use crate::mechanics::contact::vector::{Vector, add, size};
 use crate::mechanics::contact::{ContactPair, Mode};
 use crate::mechanics::equations::tolerances::RANK_TOLERANCE;
 use crate::mechanics::equations::{ModeSystem, matrix, rate_recovery};
-use crate::mechanics::multi_contact::contact_status::Standing;
+use crate::mechanics::multi_contact::changeable_contacts::Standing;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cached_factorisation::CachedFactorisation;
@@ -15,7 +15,7 @@ use crate::step::corrector::cached_factorisation::CachedFactorisation;
 #[derive(Debug, Clone)]
 pub struct CandidateDirection {
     pub rate: Rate,
-    /// Rates of the contact forces, those on the same node combined: see `node_forces::whole_rates`.
+    /// Rates of the contact forces, those on the same node combined: see `node_contact_forces::whole_rates`.
     pub forces: Vec<Vector>,
     /// Modes under which the direction is feasible at first order: stuck where a contact may stick.
     pub modes: Vec<Mode>,

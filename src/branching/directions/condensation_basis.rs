@@ -10,7 +10,7 @@
 //! direction. Both span the rates that satisfy equilibrium with these forces free, so `[Z z₀] = [X t] G⁻¹`, with `G`
 //! the velocities and the load rate of `[X t]`.
 
-use crate::algebra::dense::assembly::Sink;
+use crate::algebra::dense::matrix_sink::Sink;
 use crate::algebra::sparse::preconditioned_refinement::Nearby;
 use crate::algebra::{Factorisation, SystemFactorisation, null_space};
 use crate::branching::directions::arrival_tangent::Incoming;
@@ -18,7 +18,7 @@ use crate::branching::directions::tolerances::{ACCEPTED_BACKWARD_ERROR, SMALLEST
 use crate::mechanics::contact::Reaction;
 use crate::mechanics::contact::vector::{Vector, dot};
 use crate::mechanics::equations::tolerances::RANK_TOLERANCE;
-use crate::mechanics::equations::{Kind, ModeSystem, Role, factorisation, matrix, rate_recovery};
+use crate::mechanics::equations::{Kind, ModeSystem, Role, matrix, mode_factorisation, rate_recovery};
 use crate::mechanics::multi_contact::rate_options::contact_options::Changeable;
 use crate::mechanics::problem::state::Rate;
 use crate::resources::budget;
@@ -70,11 +70,11 @@ pub(crate) fn moving(equations: &ModeSystem<'_>, contact: usize, direction: &Vec
 fn bordered_somehow(equations: &ModeSystem<'_>, incoming: Option<&Rate>) -> Option<SystemFactorisation> {
     let iterate = equations.iterate(equations.anchor.clone());
     let by_load = |matrix: &mut dyn Sink| matrix.add(equations.size - 1, equations.loading.structure.unknowns(), 1.0);
-    if let Some(factorisation) = factorisation::factorise(equations, &iterate, Kind::Rates, by_load) {
+    if let Some(factorisation) = mode_factorisation::factorise(equations, &iterate, Kind::Rates, by_load) {
         return Some(factorisation);
     }
     if let Some(rate) = incoming
-        && let Some(factorisation) = factorisation::factorise_bordered(equations, &iterate, rate)
+        && let Some(factorisation) = mode_factorisation::factorise_bordered(equations, &iterate, rate)
     {
         return Some(factorisation);
     }
@@ -210,11 +210,11 @@ mod tests {
     use crate::check::scenes::lattice::LatticeArch;
     use crate::continuation::path::iterator::Path;
     use crate::continuation::scene::Scene;
-    use crate::mechanics::multi_contact::contact_status::Standing;
+    use crate::mechanics::multi_contact::changeable_contacts::Standing;
     use crate::resources::cancel::CancelFlag;
     use crate::step::corrector::cached_factorisation::CachedFactorisation;
     use crate::step::corrector::cost_counters::Work;
-    use crate::step::segment::StepStart;
+    use crate::step::mode_step::StepStart;
 
     /// At the contact changes of an arch that lands, the factorisation that led to each gives the same columns as a
     /// factorisation of the equations in which the contacts are fixed.
@@ -254,7 +254,7 @@ mod tests {
                 }
                 let nearby = CachedFactorisation::shared(serving.as_ref());
                 let came = ModeSystem::new(loading, &arriving.modes, state);
-                let Some(incoming) = factorisation::factorise_bordered(&came, &came.iterate(state.clone()), rate)
+                let Some(incoming) = mode_factorisation::factorise_bordered(&came, &came.iterate(state.clone()), rate)
                     .and_then(|bordered| rate_recovery::tangent_by(&came, &bordered, &came.iterate(state.clone())))
                 else {
                     continue;

@@ -15,14 +15,14 @@ use crate::complementarity::rate_search::branch_and_bound::{self, Effort, Ray};
 use crate::complementarity::rate_search::simultaneous_slips;
 use crate::complementarity::rate_search::slip_onset_direction::{self, Touch, Turning};
 use crate::complementarity::rates::rate_problem::RateProblem;
-use crate::complementarity::rates::{gauss_seidel, warm_start};
+use crate::complementarity::rates::{combinations_near_vector, gauss_seidel};
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::equations::ModeSystem;
-use crate::mechanics::multi_contact::contact_status::Standing;
+use crate::mechanics::multi_contact::changeable_contacts::Standing;
 use crate::mechanics::multi_contact::rate_options::contact_options::{Changeable, Forms, OptionOutcome};
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::node_forces::whole_rates;
+use crate::mechanics::problem::node_contact_forces::whole_rates;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::budget::{self, Taken};
 use crate::step::corrector::cached_factorisation::CachedFactorisation;
@@ -101,7 +101,7 @@ impl<'a> Condensed<'a> {
         let first = || {
             let mut first = vec![vec![0; self.changeable.len()]];
             if let Some(rate) = incoming {
-                first.extend(warm_start::near(&self.problem, &self.weights_of(state, rate)));
+                first.extend(combinations_near_vector::near(&self.problem, &self.weights_of(state, rate)));
             }
             if self.changeable.len() > FEW {
                 first.extend(gauss_seidel::sweeps(&self.problem, effort.cancel));

@@ -3,7 +3,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `candidate` | a direction of first order with the compatible contact modes |
-//! | `choice` | a feasible direction, and the rules by which one is taken |
+//! | `feasible_direction` | a feasible direction, and the rules by which one is taken |
 //! | `condensed_rate_problem` | the rate equations condensed on the velocities of the contacts that can change |
 //! | `condensation_basis` | the full rates of the structure for each of these velocities |
 //! | `arrival_tangent` | the incoming tangent, and the directions that it determines |
@@ -11,8 +11,8 @@
 
 pub(crate) mod arrival_tangent;
 pub(crate) mod candidate;
-pub(crate) mod choice;
 pub(crate) mod condensation_basis;
 pub(crate) mod condensed_rate_problem;
+pub(crate) mod feasible_direction;
 pub(crate) mod tolerances;
 pub(crate) mod trial_step;

@@ -7,17 +7,17 @@
 //! in turn, up to a bound on their number.
 
 use crate::branching::directions::candidate::CandidateDirection;
-use crate::branching::directions::choice::sign_of;
+use crate::branching::directions::feasible_direction::sign_of;
 use crate::branching::directions::tolerances::{
     CLEAR_SLOPE, FIRST_ORDER_TOLERANCE, FORCE_RATE_ROUNDING, LOAD_RATE_ROUNDING, RELATIVE_SPEED_ROUNDING,
     ROUNDINGS_PER_ENTRY, SPEED_ROUNDING, STEADY_RATE_CHANGE, TRIAL_VIOLATION,
 };
-use crate::complementarity::rates::combinations;
+use crate::complementarity::rates::cartesian_product;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::size as size_of;
 use crate::mechanics::equations::closing_equation::ArcLengthEquation;
+use crate::mechanics::equations::corrected_point::Corrected;
 use crate::mechanics::equations::scaled_rows::scaled_rows;
-use crate::mechanics::equations::solution::Corrected;
 use crate::mechanics::equations::{ModeSystem, matrix, rate_recovery};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
@@ -25,8 +25,8 @@ use crate::resources::budget::{self, Taken};
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
 use crate::step::corrector::tangent;
-use crate::step::event_functions::{self, Watch};
-use crate::step::segment::may_turn;
+use crate::step::event_functions::{self, EventFunction};
+use crate::step::mode_step::may_turn;
 use nalgebra::DVector;
 use std::collections::BTreeSet;
 
@@ -176,7 +176,7 @@ fn stepped(
 fn in_order(candidate: &CandidateDirection) -> Vec<Vec<usize>> {
     let places: Vec<Vec<usize>> =
         candidate.alternatives.iter().map(|alternatives| (0..alternatives.len()).collect()).collect();
-    let mut all: Vec<Vec<usize>> = combinations::combinations(&places, MOST_COMBINATIONS).collect();
+    let mut all: Vec<Vec<usize>> = cartesian_product::combinations(&places, MOST_COMBINATIONS).collect();
     let sliding = |places: &Vec<usize>| {
         let modes = places.iter().zip(&candidate.alternatives).flat_map(|(&place, all)| &all[place]);
         modes.filter(|(_, mode)| *mode != Mode::Stick).count()
@@ -226,39 +226,43 @@ impl Trial<'_> {
         let rates = candidate.rate.largest_reaction().max(rate.largest_reaction()).max(f64::MIN_POSITIVE);
         let mut unclear = false;
         let mut culprits = Vec::new();
-        for watch in event_functions::of_mode(loading, modes, state, &candidate.rate) {
-            let first = watch.value(loading, modes, state, &candidate.rate);
-            let tendency = watch.slope(loading, modes, state, &candidate.rate);
-            let most = if watch.is_of_forces() { rates } else { 1.0 };
+        for event_function in event_functions::of_mode(loading, modes, state, &candidate.rate) {
+            let first = event_function.value(loading, modes, state, &candidate.rate);
+            let tendency = event_function.slope(loading, modes, state, &candidate.rate);
+            let most = if event_function.is_of_forces() { rates } else { 1.0 };
             if tendency.is_some_and(|slope| slope > FIRST_ORDER_TOLERANCE * most)
-                || watch.is_above_zero(loading, state, first, FIRST_ORDER_TOLERANCE, forces)
+                || event_function.is_above_zero(loading, state, first, FIRST_ORDER_TOLERANCE, forces)
             {
                 continue;
             }
-            let scale = watch.scale(loading, &corrected.state, forces);
-            let size = if tendency.is_some() && watch.is_of_forces() { rates * (scale / forces) } else { 1.0 };
+            let scale = event_function.scale(loading, &corrected.state, forces);
+            let size = if tendency.is_some() && event_function.is_of_forces() { rates * (scale / forces) } else { 1.0 };
             if tendency.is_some_and(|slope| slope > FIRST_ORDER_TOLERANCE * size) {
                 continue;
             }
-            let last = watch.value(loading, modes, &corrected.state, &rate) / scale;
-            let grown = watch.slope(loading, modes, &corrected.state, &rate).map_or(last, |slope| slope / size);
-            let clear = match watch {
+            let last = event_function.value(loading, modes, &corrected.state, &rate) / scale;
+            let grown =
+                event_function.slope(loading, modes, &corrected.state, &rate).map_or(last, |slope| slope / size);
+            let clear = match event_function {
                 // A node on a stiff spring moves slowly, but its direction is just as clear.
-                Watch::Gap(contact) | Watch::Sliding(contact) => {
+                EventFunction::Gap(contact) | EventFunction::Sliding(contact) => {
                     SPEED_ROUNDING
                         + RELATIVE_SPEED_ROUNDING * size_of(&loading.relative_rate(contact, &corrected.state, &rate))
                 }
                 // Relative to the contact's own forces: along a chain close to jamming they decrease by orders of
                 // magnitude between nodes.
-                Watch::Normal(contact) | Watch::Cone { contact, .. } => {
+                EventFunction::Normal(contact) | EventFunction::Cone { contact, .. } => {
                     let own = candidate.rate.reactions[contact].size().max(rate.reactions[contact].size());
                     (CLEAR_SLOPE * own / size).max(FORCE_RATE_ROUNDING)
                 }
-                Watch::Facet { .. } | Watch::Slide { .. } | Watch::Hold { .. } | Watch::Return { .. } => CLEAR_SLOPE,
-                Watch::LoadRate { .. } | Watch::End(_) => CLEAR_SLOPE,
+                EventFunction::Facet { .. }
+                | EventFunction::Slide { .. }
+                | EventFunction::Hold { .. }
+                | EventFunction::Return { .. } => CLEAR_SLOPE,
+                EventFunction::LoadRate { .. } | EventFunction::End(_) => CLEAR_SLOPE,
             };
             if last < -TRIAL_VIOLATION || grown < -clear {
-                culprits.extend(contacts_of(loading, watch));
+                culprits.extend(contacts_of(loading, event_function));
             }
             unclear |= grown <= clear;
         }
@@ -273,14 +277,18 @@ impl Trial<'_> {
 }
 
 /// The contacts to which a watched quantity belongs.
-fn contacts_of(loading: Loading<'_>, watch: Watch) -> Vec<usize> {
-    match watch {
-        Watch::Gap(contact) | Watch::Normal(contact) | Watch::Cone { contact, .. } | Watch::Sliding(contact) => {
+fn contacts_of(loading: Loading<'_>, event_function: EventFunction) -> Vec<usize> {
+    match event_function {
+        EventFunction::Gap(contact)
+        | EventFunction::Normal(contact)
+        | EventFunction::Cone { contact, .. }
+        | EventFunction::Sliding(contact) => {
             vec![contact]
         }
-        Watch::Facet { corner, .. } | Watch::Slide { corner } | Watch::Hold { corner } | Watch::Return { corner } => {
-            loading.corners[corner].contacts.clone()
-        }
-        Watch::LoadRate { .. } | Watch::End(_) => Vec::new(),
+        EventFunction::Facet { corner, .. }
+        | EventFunction::Slide { corner }
+        | EventFunction::Hold { corner }
+        | EventFunction::Return { corner } => loading.corners[corner].contacts.clone(),
+        EventFunction::LoadRate { .. } | EventFunction::End(_) => Vec::new(),
     }
 }

@@ -28,7 +28,7 @@ use crate::branching::directions::condensed_rate_problem::Condensed;
 use crate::branching::uniqueness::sparse_uniqueness;
 use crate::complementarity::rate_search::branch_and_bound::Effort;
 use crate::mechanics::equations::ModeSystem;
-use crate::mechanics::multi_contact::contact_status::Standing;
+use crate::mechanics::multi_contact::changeable_contacts::Standing;
 use crate::mechanics::multi_contact::determinacy;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;

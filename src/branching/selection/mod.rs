@@ -4,9 +4,9 @@
 //! |---|---|
 //! | `enumeration` | every direction of first order |
 //! | `second_order` | directions at second order, where first order is inconclusive |
-//! | `decision` | the selection rule: largest dissipation, least potential energy, or straightest |
+//! | `selection_rule` | the selection rule: largest dissipation, least potential energy, or straightest |
 
-pub(crate) mod decision;
 pub(crate) mod enumeration;
 pub(crate) mod second_order;
+pub(crate) mod selection_rule;
 pub(crate) mod tolerances;

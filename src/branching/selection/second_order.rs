@@ -7,7 +7,7 @@
 
 use crate::branching::bifurcation::branch_directions::tolerances::COINCIDENCE_COSINE;
 use crate::branching::bifurcation::branch_directions::{SecondOrderFindings, SingularPoint, in_each_mode};
-use crate::branching::directions::choice::{DirectionChoice, PriorMotion, mark_retrace, sign_of};
+use crate::branching::directions::feasible_direction::{DirectionChoice, PriorMotion, mark_retrace, sign_of};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
 

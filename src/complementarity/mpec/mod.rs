@@ -25,14 +25,14 @@
 //! | `unboundedness` | detection of iterates that tend to infinity |
 //! | [`smooth_program`] | the smooth program of a pattern, by sequential quadratic programming |
 //! | [`quadratic_program`] | one quadratic program |
-//! | [`semismooth`] | Newton's method on the complementarity system itself |
+//! | [`semismooth_newton`] | Newton's method on the complementarity system itself |
 
 pub(crate) mod input_validation;
 pub(crate) mod piecewise_descent;
 pub mod program;
 pub mod quadratic_program;
 pub mod result;
-pub mod semismooth;
+pub mod semismooth_newton;
 pub mod settings;
 pub mod smooth_program;
 pub(crate) mod solver;
@@ -40,7 +40,7 @@ pub(crate) mod stationarity;
 pub(crate) mod tolerances;
 pub(crate) mod unboundedness;
 
-pub use crate::complementarity::mpec::program::counts::{SolverCounts, SolverIterate};
+pub use crate::complementarity::mpec::program::solve_statistics::{SolverCounts, SolverIterate};
 pub use program::activity::Activities;
 pub use program::cone::ConeActivity;
 pub use program::problem::Problem;

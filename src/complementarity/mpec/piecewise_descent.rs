@@ -21,7 +21,7 @@ use crate::complementarity::mpec::result::StationarityKind;
 use crate::complementarity::mpec::settings::{Finish, Settings};
 use crate::complementarity::mpec::smooth_program::cone_rows::ConeTreatment;
 use crate::complementarity::mpec::smooth_program::pair_treatment::{PairTreatment, TreatmentPattern};
-use crate::complementarity::mpec::smooth_program::relaxation::{Multipliers, SmoothProgramRows};
+use crate::complementarity::mpec::smooth_program::smooth_rows::{Multipliers, SmoothProgramRows};
 use crate::complementarity::mpec::smooth_program::sqp::{self, SqpEnd, SqpOutcome, SqpSettings};
 use crate::complementarity::mpec::stationarity::{self, NoVerdict};
 use crate::resources::cancel::CancelFlag;

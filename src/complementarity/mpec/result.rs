@@ -1,13 +1,13 @@
 //! The result of a solve.
 
-use crate::complementarity::mpec::program::counts::{SolverCounts, SolverIterate};
+use crate::complementarity::mpec::program::solve_statistics::{SolverCounts, SolverIterate};
 use nalgebra::DVector;
 use thiserror::Error;
 
 pub use crate::complementarity::mpec::program::activity::PairActivity;
 use crate::complementarity::mpec::program::cone::ConeActivity;
 pub use crate::complementarity::mpec::program::evaluation::Quantity;
-pub use crate::complementarity::mpec::smooth_program::relaxation::Multipliers;
+pub use crate::complementarity::mpec::smooth_program::smooth_rows::Multipliers;
 
 /// The status at the end of a solve.
 #[derive(Debug, Clone, Copy, PartialEq)]

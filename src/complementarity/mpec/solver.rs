@@ -25,7 +25,7 @@ use crate::complementarity::mpec::quadratic_program::driver::StepSolver;
 use crate::complementarity::mpec::result::{ProgramInputError, ProgramSolution, SolveStatus, StationarityKind};
 use crate::complementarity::mpec::settings::Settings;
 use crate::complementarity::mpec::smooth_program::pair_treatment::TreatmentPattern;
-use crate::complementarity::mpec::smooth_program::relaxation::SmoothProgramRows;
+use crate::complementarity::mpec::smooth_program::smooth_rows::SmoothProgramRows;
 use crate::complementarity::mpec::smooth_program::sqp::{self, SqpEnd, SqpSettings};
 use crate::complementarity::mpec::unboundedness;
 use crate::resources::cancel::CancelFlag;

@@ -35,7 +35,7 @@ use crate::complementarity::mpec::result::StationarityKind;
 use crate::complementarity::mpec::settings::Settings;
 use crate::complementarity::mpec::smooth_program::cone_rows::ConeTreatment;
 use crate::complementarity::mpec::smooth_program::pair_treatment::{PairTreatment, TreatmentPattern};
-use crate::complementarity::mpec::smooth_program::relaxation::{Multipliers, SmoothProgramRows};
+use crate::complementarity::mpec::smooth_program::smooth_rows::{Multipliers, SmoothProgramRows};
 use crate::resources::cancel::CancelFlag;
 
 /// Largest number of biactive pairs whose branches are enumerated, whatever the settings.

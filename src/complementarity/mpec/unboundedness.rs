@@ -17,7 +17,7 @@ use crate::complementarity::mpec::program::problem::Problem;
 use crate::complementarity::mpec::quadratic_program::driver::StepSolver;
 use crate::complementarity::mpec::result::Growth;
 use crate::complementarity::mpec::settings::Settings;
-use crate::complementarity::mpec::smooth_program::relaxation::SmoothProgramRows;
+use crate::complementarity::mpec::smooth_program::smooth_rows::SmoothProgramRows;
 use crate::complementarity::mpec::smooth_program::sqp::{self, SqpEnd, SqpSettings};
 use crate::resources::cancel::CancelFlag;
 

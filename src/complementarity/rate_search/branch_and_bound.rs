@@ -7,9 +7,9 @@
 //! best option first. The first branching is on the sign of the load rate. Every ray is computed from the exact
 //! equations of its combination: the search only selects the combinations to examine.
 
+use crate::complementarity::rate_search::certified_rays;
 use crate::complementarity::rate_search::single_combination;
 use crate::complementarity::rate_search::tolerances::SEARCH_TOLERANCE;
-use crate::complementarity::rate_search::unbranched;
 use crate::complementarity::rates::lemke::lemke;
 use crate::complementarity::rates::rate_problem::{Choice, Entity, RateProblem, Signed};
 use crate::complementarity::rates::simplex_dictionary::simplex;
@@ -104,7 +104,7 @@ fn explore_by(
         coupling: DMatrix::zeros(0, 0),
         cost: 1 + (problem.forms.nrows() * problem.weights()) as u64 / UNIT_OF_WORK,
     };
-    if !unbranched::certified_at_once(&mut search) {
+    if !certified_rays::certified_at_once(&mut search) {
         for chosen in first() {
             single_combination::examine(&mut search, &chosen);
         }
@@ -170,7 +170,7 @@ impl BranchAndBound<'_> {
             let chosen = vec![None; self.problem.entities.len()];
             Task { parent: Rc::new(SearchNode { chosen, dictionary, sign, in_set: false, last: None }), decision: None }
         };
-        let settled = unbranched::settled_signs(self);
+        let settled = certified_rays::settled_signs(self);
         let mut tasks: Vec<Task> = [-1.0, 1.0].into_iter().filter(|sign| !settled.contains(sign)).map(root).collect();
         if tasks.is_empty() {
             // Only rays with zero load rate remain.
@@ -255,7 +255,7 @@ impl BranchAndBound<'_> {
             }
             return Vec::new();
         }
-        if unbranched::certified_below(self, &node, &open) {
+        if certified_rays::certified_below(self, &node, &open) {
             return Vec::new();
         }
         if !node.in_set

@@ -18,10 +18,10 @@ use crate::algebra::scalar_root::find_root;
 use crate::complementarity::rate_search::branch_and_bound::Ray;
 use crate::complementarity::rate_search::slip_onset_direction::{SECTORS, Touch, Turning};
 use crate::complementarity::rate_search::tolerances::{COEFFICIENT_ROUND_OFF, RATE_TOLERANCE, SETTLED_CHANGE};
-use crate::complementarity::rates::combinations::{combinations, count};
+use crate::complementarity::rates::cartesian_product::{combinations, count};
 use crate::complementarity::rates::gauss_seidel::{Local, own_column, rising};
 use crate::complementarity::rates::rate_problem::{RateProblem, Signed};
-use crate::complementarity::rates::ray;
+use crate::complementarity::rates::ray_of_combination;
 use crate::resources::budget;
 use crate::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2, Vector3};
@@ -266,12 +266,12 @@ impl<'a> SlipEquations<'a> {
     }
 
     fn ray(&self, pattern: &OptionPattern, weights: &DVector<f64>) -> Option<Turning> {
-        let size = ray::size(self.problem, weights);
+        let size = ray_of_combination::size(self.problem, weights);
         if !(size.is_finite() && size > 0.0) {
             return None;
         }
         let weights = weights / size;
-        let along = ray::forms_along(self.problem, &weights);
+        let along = ray_of_combination::forms_along(self.problem, &weights);
         let force = along.force_tolerance();
         let mut chosen = pattern.chosen.clone();
         let mut slips = Vec::new();

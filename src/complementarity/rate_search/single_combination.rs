@@ -1,10 +1,10 @@
-//! The examination of combinations: the exact line of each combination, and the rays on it.
+//! Examines single combinations of options: solves for the exact line of each and finds the rays on this line.
 
 use crate::complementarity::rate_search::branch_and_bound::{BranchAndBound, Ray};
 use crate::complementarity::rate_search::tolerances::RAY_DISTANCE;
-use crate::complementarity::rates::combinations::{combinations, count};
-use crate::complementarity::rates::ray;
-use crate::complementarity::rates::ray::{Along, Line};
+use crate::complementarity::rates::cartesian_product::{combinations, count};
+use crate::complementarity::rates::ray_of_combination;
+use crate::complementarity::rates::ray_of_combination::{Along, Line};
 use nalgebra::DVector;
 
 /// Largest number of combinations of options in doubt tried on one line, in addition to those suggested by violations.
@@ -30,10 +30,10 @@ pub(crate) fn examine(search: &mut BranchAndBound<'_>, chosen: &[usize]) -> Exam
     }
     search.held.add::<usize>(chosen.len());
     search.findings.examined += search.cost;
-    match ray::line(search.problem, chosen) {
+    match ray_of_combination::line(search.problem, chosen) {
         Line::Nothing => Examined::Nothing,
         Line::Along(weights) => {
-            let along = ray::forms_along(search.problem, &weights);
+            let along = ray_of_combination::forms_along(search.problem, &weights);
             let second = along.violated(chosen);
             let along = along.reversed();
             let first = along.violated(chosen);
@@ -52,8 +52,8 @@ pub(crate) fn examine(search: &mut BranchAndBound<'_>, chosen: &[usize]) -> Exam
         }
         Line::Plane(basis) => {
             search.findings.degenerate = true;
-            for weights in ray::edges(search.problem, chosen, &basis) {
-                let along = ray::forms_along(search.problem, &weights);
+            for weights in ray_of_combination::edges(search.problem, chosen, &basis) {
+                let along = ray_of_combination::forms_along(search.problem, &weights);
                 keep(search, chosen, weights, &along);
             }
             if search.findings.planes.len() < MOST_PLANES {
@@ -114,7 +114,7 @@ pub(crate) fn examine_all(search: &mut BranchAndBound<'_>, options: &[Vec<usize>
             None => settled |= matches!(examine(search, &chosen), Examined::Rays),
             // The line is the known one; its other sense may be feasible under this combination only.
             Some(reversed) => {
-                let along = ray::forms_along(search.problem, &reversed);
+                let along = ray_of_combination::forms_along(search.problem, &reversed);
                 if along.violated(&chosen).is_empty() {
                     keep(search, &chosen, reversed, &along);
                 }

@@ -1,10 +1,10 @@
 //! The search against plain enumeration of every combination, which exists for this comparison only.
 
 use crate::complementarity::rate_search::branch_and_bound::{Effort, Findings, Ray, explore, explore_without_pivoting};
-use crate::complementarity::rates::combinations::combinations;
+use crate::complementarity::rates::cartesian_product::combinations;
 use crate::complementarity::rates::rate_problem::{Entity, RateProblem, Touching};
-use crate::complementarity::rates::ray;
-use crate::complementarity::rates::ray::Line;
+use crate::complementarity::rates::ray_of_combination;
+use crate::complementarity::rates::ray_of_combination::Line;
 use crate::complementarity::rates::{lemke, p_matrix, parametric_lcp};
 use crate::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector};
@@ -37,11 +37,11 @@ pub(crate) fn every_combination(problem: &RateProblem) -> Findings {
     let mut findings = Findings::default();
     let options: Vec<Vec<usize>> = problem.entities.iter().map(|entity| (0..entity.options.len()).collect()).collect();
     for chosen in combinations(&options, u64::MAX) {
-        match ray::line(problem, &chosen) {
+        match ray_of_combination::line(problem, &chosen) {
             Line::Nothing => {}
             Line::Along(weights) => {
                 for weights in [-&weights, weights] {
-                    let along = ray::forms_along(problem, &weights);
+                    let along = ray_of_combination::forms_along(problem, &weights);
                     if along.violated(&chosen).is_empty() {
                         let fitting: Vec<Vec<usize>> = chosen.iter().map(|choice| vec![*choice]).collect();
                         let weak = along.is_weak(&fitting);
@@ -169,12 +169,12 @@ fn compare(problem: &RateProblem, found: &Findings, exact: &Findings, what: &str
     }
     for ray in &found.rays {
         // A combination whose equations leave more than a line may still be a label of a ray.
-        let is_plane = || matches!(ray::line(problem, &ray.chosen()), Line::Plane(_));
+        let is_plane = || matches!(ray_of_combination::line(problem, &ray.chosen()), Line::Plane(_));
         let known = exact.rays.iter().any(|other| near(ray, other) && ray.is_under(&other.chosen()));
         assert!(known || is_plane(), "{what}: {:?} {:?} is none", ray.fitting, ray.weights);
         for combination in combinations(&ray.fitting, u64::MAX) {
             let listed = exact.rays.iter().any(|other| near(ray, other) && other.chosen() == combination);
-            let is_plane = || matches!(ray::line(problem, &combination), Line::Plane(_));
+            let is_plane = || matches!(ray_of_combination::line(problem, &combination), Line::Plane(_));
             assert!(listed || is_plane(), "{what}: {combination:?} is no label of {:?}", ray.weights);
         }
     }

@@ -1,5 +1,4 @@
-//! Block pivoting for complementarity conditions, of which one or the other holds: all violated conditions change at
-//! once.
+//! Block pivoting for complementarity problems: every violated pair is switched at the same time.
 //!
 //! Block pivoting takes few rounds but may cycle (M. M. Kostreva, Optimization 9 (1978) 13). After a number of rounds
 //! only the last violated condition changes, which is finite where there is one solution for each right-hand side (K. G.

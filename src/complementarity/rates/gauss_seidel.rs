@@ -1,4 +1,4 @@
-//! A likely combination by sweeps over the entities, each solved with the others fixed.
+//! Finds a likely combination by Gauss-Seidel sweeps over the entities, each solved with the others fixed.
 //!
 //! Nonlinear Gauss-Seidel for contact and friction (M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235,
 //! doi:10.1016/S0045-7825(98)00383-1), in velocities. For a stable structure the sweeps converge to the combination
@@ -8,7 +8,7 @@
 //! over-relaxation does not settle.
 
 use crate::complementarity::rates::rate_problem::{Entity, RateProblem, Touching};
-use crate::complementarity::rates::ray;
+use crate::complementarity::rates::ray_of_combination;
 use crate::complementarity::rates::tolerances::{DIVERGENT_GROWTH, RELATIVE_ROUND_OFF, SETTLED_CHANGE};
 use crate::resources::budget;
 use crate::resources::cancel::CancelFlag;
@@ -174,7 +174,9 @@ fn settle(
             return None;
         }
         unchanged = if same { unchanged + 1 } else { 0 };
-        if same && change <= SETTLED_CHANGE * largest || unchanged >= enough && ray::is_feasible(problem, &chosen) {
+        if same && change <= SETTLED_CHANGE * largest
+            || unchanged >= enough && ray_of_combination::is_feasible(problem, &chosen)
+        {
             return Some(chosen);
         }
         if unchanged >= enough {

@@ -10,7 +10,7 @@
 //! (A. Klarbring, Ing. Arch. 60 (1990) 529). A covering vector `d > 0` with its own variable `z0` gives a feasible
 //! basis; the complement of the variable that left enters, until `z0` leaves (a solution) or no variable can leave (a
 //! secondary ray: no solution found). Ties are broken lexicographically, so that no basis repeats (R. W. Cottle, J.-S.
-//! Pang, R. E. Stone, *The Linear Complementarity Problem*, 1992, section 4.4 and 4.9). Different covering vectors may
+//! Pang, R. E. Stone, *The Linear Complementarity Problem*, 1992, sections 4.4 and 4.9). Different covering vectors may
 //! lead to different solutions. Each solution gives a combination, which is examined exactly like any other.
 
 use crate::complementarity::rates::gauss_seidel::{Local, rising};

@@ -1,4 +1,4 @@
-//! The frictionless contacts that are closed at the end of a step, by the equations linearised once.
+//! Finds the frictionless contacts that are closed at the end of a step from a single linearisation.
 //!
 //! Let `x₀` be the state after one iteration in some mode, and `x_j` the solutions of the same equations for a unit
 //! force of each contact that is open in this mode and for a unit gap of each closed contact. Each `x₀ + Σ z_j x_j`
@@ -206,7 +206,7 @@ mod tests {
     use crate::step::corrector::cost_counters::Work;
     use crate::step::corrector::newton;
     use crate::step::corrector::single_iteration;
-    use crate::step::segment::StepStart;
+    use crate::step::mode_step::StepStart;
     use std::collections::BTreeSet;
 
     /// Where an arch lands on several contacts at a time, its equations linearised without them approximate the state

@@ -10,11 +10,11 @@ use crate::continuation::contact_changes::prediction::ForeseenChange;
 use crate::continuation::contact_changes::tolerances::{
     CONSTANT_BOUND_SLOPE, CONSTANT_SLOPE, EVENT_OVERSHOOT, VANISHING_EVENT_VALUE,
 };
-use crate::continuation::path_state::trace::PathTrace;
-use crate::mechanics::equations::stage_criteria::End;
+use crate::continuation::path_state::path_context::PathTrace;
+use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::linearity::is_straight;
-use crate::mechanics::problem::node_forces;
-use crate::step::event_functions::{self, Watch};
+use crate::mechanics::problem::node_contact_forces;
+use crate::step::event_functions::{self, EventFunction};
 
 /// The next event, where the path is straight up to the event and a little beyond.
 pub(crate) fn next_event_ahead(trace: &mut PathTrace<'_>) -> Option<ForeseenChange> {
@@ -22,22 +22,22 @@ pub(crate) fn next_event_ahead(trace: &mut PathTrace<'_>) -> Option<ForeseenChan
         return None;
     }
     loop {
-        let (watch, way) = straight_way(trace)?;
+        let (event_function, way) = straight_way(trace)?;
         let (contacts, step) = (trace.at.near.len(), way * (1.0 + EVENT_OVERSHOOT));
         trace.look_ahead(step);
         if trace.at.near.len() == contacts {
-            return Some(ForeseenChange { watch, way, step, is_straight: true });
+            return Some(ForeseenChange { event_function, way, step, is_straight: true });
         }
     }
 }
 
 /// The quantity that first decreases to zero, and the arc length up to its zero.
-fn straight_way(trace: &PathTrace<'_>) -> Option<(Watch, f64)> {
+fn straight_way(trace: &PathTrace<'_>) -> Option<(EventFunction, f64)> {
     let (loading, here) = (trace.loading(), &trace.at.here);
     let rate = here.rate.as_ref()?;
     // The force of several obstacles in space does not vary linearly up to the bound of its admissible set.
     if !loading.contacts.iter().all(is_straight)
-        || loading.corners.iter().any(|corner| !node_forces::is_in_plane(loading, corner))
+        || loading.corners.iter().any(|corner| !node_contact_forces::is_in_plane(loading, corner))
     {
         return None;
     }
@@ -45,25 +45,25 @@ fn straight_way(trace: &PathTrace<'_>) -> Option<(Watch, f64)> {
     if ends.iter().any(|end| matches!(end, End::Increments(_))) {
         return None;
     }
-    let mut watches = event_functions::of_mode(loading, &here.modes, &here.state, rate);
-    watches.extend(ends.iter().map(|end| Watch::End(*end)));
+    let mut event_functions = event_functions::of_mode(loading, &here.modes, &here.state, rate);
+    event_functions.extend(ends.iter().map(|end| EventFunction::End(*end)));
     let ahead = here.state.advanced(rate, 1.0);
-    let mut nearest: Option<(Watch, f64)> = None;
-    for watch in watches {
-        let now = watch.value(loading, &here.modes, &here.state, rate);
-        let change = watch.value(loading, &here.modes, &ahead, rate) - now;
+    let mut nearest: Option<(EventFunction, f64)> = None;
+    for event_function in event_functions {
+        let now = event_function.value(loading, &here.modes, &here.state, rate);
+        let change = event_function.value(loading, &here.modes, &ahead, rate) - now;
         if change >= 0.0 {
             continue;
         }
-        let scale = watch.scale(loading, &here.state, trace.at.totals.force_scale);
-        let constant = if watch.is_of_contact() { CONSTANT_SLOPE } else { CONSTANT_BOUND_SLOPE };
+        let scale = event_function.scale(loading, &here.state, trace.at.totals.force_scale);
+        let constant = if event_function.is_of_contact() { CONSTANT_SLOPE } else { CONSTANT_BOUND_SLOPE };
         if change < -constant * scale {
             if now <= VANISHING_EVENT_VALUE * scale {
                 return None;
             }
             let way = now / -change;
             if nearest.is_none_or(|(_, least)| way < least) {
-                nearest = Some((watch, way));
+                nearest = Some((event_function, way));
             }
         }
     }

@@ -12,26 +12,26 @@ use crate::continuation::contact_changes::simultaneous::may_join_at;
 use crate::continuation::contact_changes::tolerances::{
     PREDICTED_STEP_RATIO, SMALLEST_DISTANCE_RATIO, SMALLEST_STEP_SHARE,
 };
-use crate::continuation::path_state::step_quantum::quantised;
-use crate::continuation::path_state::trace::PathTrace;
+use crate::continuation::path_state::path_context::PathTrace;
+use crate::continuation::path_state::step_factor_rounding::quantised;
 use crate::mechanics::equations::ModeSystem;
-use crate::mechanics::equations::stage_criteria::End;
+use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::state::Rate;
 use crate::step::corrector::cached_factorisation::CachedFactorisation;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
 use crate::step::corrector::tangent;
-use crate::step::event_functions::{self, EventZero, Watch};
+use crate::step::event_functions::{self, EventFunction, EventZero};
 use crate::step::event_location::StepPoints;
 use crate::step::interpolation::PlacedPoint;
-use crate::step::segment::{Attempt, StepStart, may_turn};
+use crate::step::mode_step::{Attempt, StepStart, may_turn};
 use crate::step::tolerances::EVENT_TOLERANCE;
 
 /// A contact change, or the end of a stage, predicted by the rates.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ForeseenChange {
     /// The quantity that decreases to zero there.
-    pub watch: Watch,
+    pub event_function: EventFunction,
     /// Arc length up to the change.
     pub way: f64,
     /// Arc length to just past the change.
@@ -52,22 +52,27 @@ pub(crate) fn step_to_foreseen_change(
 ) -> Option<ForeseenChange> {
     let (loading, here) = (trace.loading(), &trace.at.here);
     loading.structure.layout()?;
-    let way = |watch: &event_functions::Watch| {
-        let slope = watch.slope(loading, &here.modes, &here.state, rate).filter(|slope| *slope < 0.0)?;
-        let value = watch.value(loading, &here.modes, &here.state, rate);
+    let way = |event_function: &event_functions::EventFunction| {
+        let slope = event_function.slope(loading, &here.modes, &here.state, rate).filter(|slope| *slope < 0.0)?;
+        let value = event_function.value(loading, &here.modes, &here.state, rate);
         // A quantity that is zero at the present point has just changed.
-        let is_above = watch.is_above(loading, &here.state, value, EVENT_TOLERANCE, trace.at.totals.force_scale);
+        let is_above =
+            event_function.is_above(loading, &here.state, value, EVENT_TOLERANCE, trace.at.totals.force_scale);
         is_above.then(|| value / -slope)
     };
-    let watches = event_functions::of_mode(loading, &here.modes, &here.state, rate);
-    let ways = || watches.iter().filter_map(|watch| Some((*watch, way(watch)?)));
+    let event_functions = event_functions::of_mode(loading, &here.modes, &here.state, rate);
+    let ways = || event_functions.iter().filter_map(|event_function| Some((*event_function, way(event_function)?)));
     let (first, way) = ways().min_by(|one, other| one.1.total_cmp(&other.1))?;
-    if may_join && ways().filter(|(_, way)| *way < step).all(|(watch, _)| may_join_at(loading, &here.modes, watch)) {
+    if may_join
+        && ways()
+            .filter(|(_, way)| *way < step)
+            .all(|(event_function, _)| may_join_at(loading, &here.modes, event_function))
+    {
         return None;
     }
     let part = PREDICTED_STEP_RATIO * way / step;
     let step = step * quantised(part.max(SMALLEST_STEP_SHARE));
-    (part < 1.0).then_some(ForeseenChange { watch: first, way, step, is_straight: false })
+    (part < 1.0).then_some(ForeseenChange { event_function: first, way, step, is_straight: false })
 }
 
 /// The step that ends at a predicted change, which is solved for directly; `None` where the solution lies elsewhere.
@@ -80,15 +85,15 @@ pub(crate) fn meet_change(
     load_sign: f64,
     work: &mut Work,
 ) -> Option<Attempt> {
-    let ForeseenChange { watch, way, step, is_straight } = foreseen;
+    let ForeseenChange { event_function, way, step, is_straight } = foreseen;
     let system = ModeSystem::new(start.loading, start.modes, start.state);
-    if watch.slope(start.loading, start.modes, start.state, start.rate).is_none() || system.has_tracks() {
+    if event_function.slope(start.loading, start.modes, start.state, start.rate).is_none() || system.has_tracks() {
         return None;
     }
     let guess = before.and_then(|before| before.foresee(start.state, start.rate, way));
     let guess = guess.unwrap_or_else(|| start.state.advanced(start.rate, way));
-    let scale = watch.scale(start.loading, &guess, start.force_scale);
-    let closing = EventZero { watch, scale, towards: start.rate };
+    let scale = event_function.scale(start.loading, &guess, start.force_scale);
+    let closing = EventZero { event_function, scale, towards: start.rate };
     let own = cached.filter(|_| is_straight).and_then(|cached| cached.along(&system, start.rate));
     let mut serving = None;
     let guess = system.iterate(guess);
@@ -101,18 +106,18 @@ pub(crate) fn meet_change(
         _ => start.directed(system, corrected, &closing, &mut serving, work).ok()?,
     };
     let state = &reached.corrected.state;
-    let falls = watch.slope(start.loading, start.modes, state, &reached.rate).is_some_and(|slope| slope < 0.0);
-    let is_zero = start.value(watch, state, &reached.rate).abs() <= start.zero(watch, &reached);
+    let falls = event_function.slope(start.loading, start.modes, state, &reached.rate).is_some_and(|slope| slope < 0.0);
+    let is_zero = start.value(event_function, state, &reached.rate).abs() <= start.zero(event_function, &reached);
     let turns = may_turn(start.rate.product(&reached.rate)).is_err();
     if !falls || !is_zero || turns || reached.step > step || reached.step < SMALLEST_DISTANCE_RATIO * way {
         return None;
     }
-    let watches = start.watches(ends, load_sign);
-    let others: Vec<Watch> = watches.iter().copied().filter(|other| *other != watch).collect();
+    let event_functions = start.event_functions(ends, load_sign);
+    let others: Vec<EventFunction> = event_functions.iter().copied().filter(|other| *other != event_function).collect();
     let mut passed = start.passed(&others, &reached);
     let mut stretch = (!passed.is_empty()).then(|| Box::new(StepPoints::new(start, &reached, serving.take())));
     if stretch.is_none() && !is_straight {
         (passed, stretch) = start.dips(&others, &mut reached, serving, work).ok()?;
     }
-    Some(Attempt { reached, watches, passed, stretch, met: Some(watch) })
+    Some(Attempt { reached, event_functions, passed, stretch, met: Some(event_function) })
 }

@@ -9,9 +9,9 @@
 //!
 //! and found by Newton's method in one mode after another: all contacts that violate a mode at its end are changed at
 //! once (a primal-dual active set: M. Hintermüller, K. Ito, K. Kunisch, SIAM J. Optim. 13 (2002) 865,
-//! doi:10.1137/S1052623401383558). In large structures one iteration for each mode identifies them, until no mode is
-//! violated any more, and the next mode is found with the linearised equations of this iteration
-//! (`linear_complementarity`); then the point is solved for, and checked again.
+//! doi:10.1137/S1052623401383558). In large structures one Newton iteration for each mode suffices: its
+//! linearised equations give the next mode (`linear_complementarity`), until no contact violates its mode; then the
+//! point is solved for, and checked again.
 //!
 //! This end lies on the path if the direction is unique throughout the step. Let `M` be the stiffness condensed on the
 //! contacts that change, with all others unchanged. Each sign of the load rate has exactly one direction in any of
@@ -43,17 +43,17 @@ use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::size;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::closing_equation::ArcLengthEquation;
-use crate::mechanics::equations::solution::Corrected;
-use crate::mechanics::equations::stage_criteria::End;
-use crate::mechanics::multi_contact::contact_status::{Standing, standings};
+use crate::mechanics::equations::corrected_point::Corrected;
+use crate::mechanics::equations::stage_end_criteria::End;
+use crate::mechanics::multi_contact::changeable_contacts::{Standing, standings};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
 use crate::step::corrector::single_iteration;
 use crate::step::corrector::tangent;
-use crate::step::event_functions::{self, Watch};
-use crate::step::segment::{Attempt, Reached, StepStart, may_turn};
+use crate::step::event_functions::{self, EventFunction};
+use crate::step::mode_step::{Attempt, Reached, StepStart, may_turn};
 use crate::step::tolerances::{COINCIDENCE_TOLERANCE, EVENT_TOLERANCE};
 use std::collections::BTreeSet;
 
@@ -94,8 +94,8 @@ struct UnchangedStepEnd<'a> {
 }
 
 /// The contact that touches or lifts off where a quantity is zero, if it has no friction and its node no other contact.
-fn smooth(loading: Loading<'_>, watch: Watch) -> Option<usize> {
-    let (Watch::Gap(contact) | Watch::Normal(contact)) = watch else { return None };
+fn smooth(loading: Loading<'_>, event_function: EventFunction) -> Option<usize> {
+    let (EventFunction::Gap(contact) | EventFunction::Normal(contact)) = event_function else { return None };
     let alone = !loading.corners.iter().any(|corner| corner.contacts.contains(&contact));
     (alone && loading.contacts[contact].tangents() == 0).then_some(contact)
 }
@@ -107,13 +107,13 @@ fn remembers(loading: Loading<'_>, modes: &[Mode]) -> bool {
 }
 
 /// Whether the change at which a quantity is zero may be treated together with others.
-pub(crate) fn may_join_at(loading: Loading<'_>, modes: &[Mode], watch: Watch) -> bool {
-    smooth(loading, watch).is_some() && !remembers(loading, modes)
+pub(crate) fn may_join_at(loading: Loading<'_>, modes: &[Mode], event_function: EventFunction) -> bool {
+    smooth(loading, event_function).is_some() && !remembers(loading, modes)
 }
 
 /// The contacts that change in a trial step, if they are several and may be treated together.
 pub(crate) fn changes_to_join(start: &StepStart<'_>, tried: &Attempt) -> Option<BTreeSet<usize>> {
-    joinable(start, &tried.watches, &tried.passed, tried.reached.step)
+    joinable(start, &tried.event_functions, &tried.passed, tried.reached.step)
 }
 
 /// The end of a trial step that passes these contact changes, if they can be treated together.
@@ -123,7 +123,7 @@ pub(crate) fn join_changes(
     tried: &Attempt,
     work: &mut Work,
 ) -> Option<Joined> {
-    let Attempt { reached, watches, .. } = tried;
+    let Attempt { reached, event_functions, .. } = tried;
     join(
         start,
         first,
@@ -133,7 +133,7 @@ pub(crate) fn join_changes(
             step: reached.step,
             factorisation: None,
         },
-        watches,
+        event_functions,
         work,
     )
 }
@@ -148,40 +148,47 @@ pub(crate) fn join_foreseen(
     work: &mut Work,
 ) -> Option<Option<Joined>> {
     start.loading.structure.layout()?;
-    let watches = start.watches(ends, load_sign);
-    let passes = |watch: &Watch| {
-        let slope = watch.slope(start.loading, start.modes, start.state, start.rate).filter(|slope| *slope < 0.0);
-        slope.is_some_and(|slope| start.value(*watch, start.state, start.rate) < -slope * step)
+    let event_functions = start.event_functions(ends, load_sign);
+    let passes = |event_function: &EventFunction| {
+        let slope =
+            event_function.slope(start.loading, start.modes, start.state, start.rate).filter(|slope| *slope < 0.0);
+        slope.is_some_and(|slope| start.value(*event_function, start.state, start.rate) < -slope * step)
     };
-    let foreseen: Vec<Watch> = watches.iter().copied().filter(passes).collect();
-    joinable(start, &watches, &foreseen, step)?;
+    let foreseen: Vec<EventFunction> = event_functions.iter().copied().filter(passes).collect();
+    joinable(start, &event_functions, &foreseen, step)?;
     let system = ModeSystem::new(start.loading, start.modes, start.state);
     let closing = ArcLengthEquation { from: start.state, step };
     let (state, factorisation) =
         single_iteration::iterated_once(&system, start.state.advanced(start.rate, step), &closing, work)?;
     let rate = single_iteration::direction_about(&system, &state, &factorisation, start.rate)?;
-    let negative = |watch: &Watch| {
-        start.value(*watch, &state, &rate) < -EVENT_TOLERANCE * watch.scale(start.loading, &state, start.force_scale)
+    let negative = |event_function: &EventFunction| {
+        start.value(*event_function, &state, &rate)
+            < -EVENT_TOLERANCE * event_function.scale(start.loading, &state, start.force_scale)
     };
-    let passed: Vec<Watch> = watches.iter().copied().filter(negative).collect();
-    let first = joinable(start, &watches, &passed, step)?;
+    let passed: Vec<EventFunction> = event_functions.iter().copied().filter(negative).collect();
+    let first = joinable(start, &event_functions, &passed, step)?;
     let far = UnchangedStepEnd { state: &state, rate: &rate, step, factorisation: Some(&factorisation) };
-    Some(join(start, &first, far, &watches, work))
+    Some(join(start, &first, far, &event_functions, work))
 }
 
-fn joinable(start: &StepStart<'_>, watches: &[Watch], passed: &[Watch], step: f64) -> Option<BTreeSet<usize>> {
-    let turns = watches.iter().any(|watch| matches!(watch, Watch::LoadRate { .. }));
-    if passed.len() < 2 || !turns || !may_join(start) || !leaves_no_trace(start, watches, step) {
+fn joinable(
+    start: &StepStart<'_>,
+    event_functions: &[EventFunction],
+    passed: &[EventFunction],
+    step: f64,
+) -> Option<BTreeSet<usize>> {
+    let turns = event_functions.iter().any(|event_function| matches!(event_function, EventFunction::LoadRate { .. }));
+    if passed.len() < 2 || !turns || !may_join(start) || !leaves_no_trace(start, event_functions, step) {
         return None;
     }
-    passed.iter().map(|watch| smooth(start.loading, *watch)).collect()
+    passed.iter().map(|event_function| smooth(start.loading, *event_function)).collect()
 }
 
 fn join(
     start: &StepStart<'_>,
     first: &BTreeSet<usize>,
     far: UnchangedStepEnd<'_>,
-    watches: &[Watch],
+    event_functions: &[EventFunction],
     work: &mut Work,
 ) -> Option<Joined> {
     let mut serving = None;
@@ -194,7 +201,7 @@ fn join(
         (0..modes.len()).filter(|contact| modes[*contact] != start.modes[*contact]).collect();
     let changes = restless.len();
     let turns = may_turn(start.rate.product(&reached.rate)).is_err();
-    if changes < 2 || turns || !nothing_else_ends(start, watches, &mut restless, &reached) {
+    if changes < 2 || turns || !nothing_else_ends(start, event_functions, &mut restless, &reached) {
         return None;
     }
     let mut same = |state: &State| negative_where_held_or_free(start, &restless, state, work) == Some(negative);
@@ -214,17 +221,17 @@ pub(crate) fn may_join(start: &StepStart<'_>) -> bool {
 
 /// Whether no event that depends on its place can occur within a step, where a quantity may vanish and return at the
 /// kinks. The load is monotonic; no displacement exceeds the length of the path.
-fn leaves_no_trace(start: &StepStart<'_>, watches: &[Watch], step: f64) -> bool {
+fn leaves_no_trace(start: &StepStart<'_>, event_functions: &[EventFunction], step: f64) -> bool {
     let length = LONGEST_PATH_RATIO * step;
-    watches.iter().all(|watch| {
-        let value = start.value(*watch, start.state, start.rate);
-        match *watch {
-            Watch::LoadRate { .. } | Watch::End(End::Load { .. }) => true,
-            Watch::End(_) => value > length,
-            Watch::Gap(contact) if smooth(start.loading, *watch).is_none() => {
+    event_functions.iter().all(|event_function| {
+        let value = start.value(*event_function, start.state, start.rate);
+        match *event_function {
+            EventFunction::LoadRate { .. } | EventFunction::End(End::Load { .. }) => true,
+            EventFunction::End(_) => value > length,
+            EventFunction::Gap(contact) if smooth(start.loading, *event_function).is_none() => {
                 value > length * (1.0 + size(&start.loading.pattern.shifts[contact]))
             }
-            _ => smooth(start.loading, *watch).is_some(),
+            _ => smooth(start.loading, *event_function).is_some(),
         }
     })
 }
@@ -329,33 +336,34 @@ fn settled(
 
 /// The contacts whose modes do not hold at a state; `None` where some other quantity is negative.
 pub(crate) fn broken(start: &StepStart<'_>, modes: &[Mode], state: &State, forces: f64) -> Option<Vec<usize>> {
-    let broken = event_functions::of_mode(start.loading, modes, state, start.rate).into_iter().filter(|watch| {
-        let value = watch.value(start.loading, modes, state, start.rate);
-        value < -EVENT_TOLERANCE * watch.scale(start.loading, state, forces)
-    });
-    broken.map(|watch| smooth(start.loading, watch)).collect()
+    let broken =
+        event_functions::of_mode(start.loading, modes, state, start.rate).into_iter().filter(|event_function| {
+            let value = event_function.value(start.loading, modes, state, start.rate);
+            value < -EVENT_TOLERANCE * event_function.scale(start.loading, state, forces)
+        });
+    broken.map(|event_function| smooth(start.loading, event_function)).collect()
 }
 
 /// Whether no stage ends within the step or at its end, the load rate keeps its sign, the other contacts keep their
 /// modes, and none can change at the end. Contacts that may have changed twice are added to the `restless`.
 fn nothing_else_ends(
     start: &StepStart<'_>,
-    watches: &[Watch],
+    event_functions: &[EventFunction],
     restless: &mut BTreeSet<usize>,
     reached: &Reached,
 ) -> bool {
     let state = &reached.corrected.state;
     let forces = start.force_scale.max(reached.corrected.force_scale);
     let ends = ((start.state, start.rate), (state, &reached.rate));
-    for watch in watches {
-        let smooth = smooth(start.loading, *watch);
+    for event_function in event_functions {
+        let smooth = smooth(start.loading, *event_function);
         if smooth.is_some_and(|contact| restless.contains(&contact)) {
             continue;
         }
-        let last = watch.value(start.loading, start.modes, state, &reached.rate);
-        let dips = |zero| watch.dip(start.loading, start.modes, ends.0, ends.1, reached.step, zero).is_some();
-        if watch.is_above_zero(start.loading, state, last, COINCIDENCE_TOLERANCE, forces)
-            && !(dips(0.0) && dips(EVENT_TOLERANCE * watch.scale(start.loading, state, forces)))
+        let last = event_function.value(start.loading, start.modes, state, &reached.rate);
+        let dips = |zero| event_function.dip(start.loading, start.modes, ends.0, ends.1, reached.step, zero).is_some();
+        if event_function.is_above_zero(start.loading, state, last, COINCIDENCE_TOLERANCE, forces)
+            && !(dips(0.0) && dips(EVENT_TOLERANCE * event_function.scale(start.loading, state, forces)))
         {
             continue;
         }

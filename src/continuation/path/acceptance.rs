@@ -1,17 +1,17 @@
 //! Acceptance of a point reached by a step: it becomes the present point and a row.
 
 use crate::branching::bifurcation::locate::Crossing;
-use crate::continuation::path::classification::{self, Arrival, Came};
+use crate::continuation::path::point_classification::{self, Arrival, Came};
 use crate::continuation::path::stages;
 use crate::continuation::path::step_control::{self, AcceptedStep};
-use crate::continuation::path_state::progress::{Arriving, Phase};
+use crate::continuation::path_state::path_context::{Emitted, PathTrace};
+use crate::continuation::path_state::resumable_state::{Arriving, Phase};
 use crate::continuation::path_state::tolerances::REACTION_ROUND_OFF;
-use crate::continuation::path_state::trace::{Emitted, PathTrace};
 use crate::mechanics::contact::{Mode, Reaction, all_continue};
 use crate::mechanics::problem::natural_residual;
 use crate::result::increment::{Increment, Point, PointKind};
 use crate::result::stop_reason::StopReason;
-use crate::step::event_functions::Watch;
+use crate::step::event_functions::EventFunction;
 use crate::step::interpolation::PlacedPoint;
 
 /// Makes the reached point the present one and classifies it; `None` where its continuation would violate the contact
@@ -23,7 +23,7 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
     let here = &mut trace.at.here;
     let before = std::mem::replace(&mut here.state, reached.corrected.state);
     let begun = here.rate.take().filter(|_| accepted.joined == 0);
-    let changes = reached.event.is_some_and(Watch::is_of_contact);
+    let changes = reached.event.is_some_and(EventFunction::is_of_contact);
     here.apart = (changes && here.before.is_none()).then_some(reached.step);
     (here.before, here.is_factorised) = (None, false);
     let mut modes = std::mem::replace(&mut here.modes, reached.corrected.modes);
@@ -92,15 +92,15 @@ fn what_it_is(
     trace: &mut PathTrace<'_>,
     modes: &mut Vec<Mode>,
     joined: u64,
-    event: Option<Watch>,
+    event: Option<EventFunction>,
     crossing: Option<Crossing>,
     came: Came,
 ) -> Arrival {
     if joined == 0 {
-        return classification::classify(trace, event, crossing, came);
+        return point_classification::classify(trace, event, crossing, came);
     }
     trace.at.here.is_singular = false;
-    let arrival = classification::joined_changes(trace, modes, joined, came.rate);
+    let arrival = point_classification::joined_changes(trace, modes, joined, came.rate);
     modes.clone_from(&trace.at.here.modes);
     arrival
 }

@@ -1,17 +1,17 @@
 //! A path along a direction that another path did not take.
 
-use crate::branching::directions::choice::DirectionChoice;
+use crate::branching::directions::feasible_direction::DirectionChoice;
 use crate::branching::directions::tolerances::STATIONARY_LOAD_RATE;
 use crate::continuation::path::checkpoint::CheckpointError;
 use crate::step::tolerances::BOUND_TOLERANCE;
 
-use crate::continuation::path_state::progress::{Followed, Phase, StageCounts};
+use crate::continuation::path_state::path_context::{Emitted, PathTrace};
+use crate::continuation::path_state::resumable_state::{Followed, Phase, StageCounts};
 use crate::continuation::path_state::totals::Totals;
-use crate::continuation::path_state::trace::{Emitted, PathTrace};
 
 use crate::continuation::path_state::visited_states;
 use crate::mechanics::contact::all_continue;
-use crate::mechanics::equations::stage_criteria::End;
+use crate::mechanics::equations::stage_end_criteria::End;
 use crate::result::increment::{Increment, Point, PointKind};
 
 /// A separate path from a point along one of the directions listed there: see `Path::follow`.

@@ -6,8 +6,8 @@
 
 use crate::continuation::path::checkpoint::{self, Checkpoint, CheckpointError};
 use crate::continuation::path::{acceptance, branch_switching, stages, step_control};
-use crate::continuation::path_state::progress::{Phase, Progress};
-use crate::continuation::path_state::trace::PathTrace;
+use crate::continuation::path_state::path_context::PathTrace;
+use crate::continuation::path_state::resumable_state::{Phase, Progress};
 use crate::continuation::scene::Scene;
 use crate::resources::budget::{self, Budget};
 use crate::resources::cancel::CancelFlag;

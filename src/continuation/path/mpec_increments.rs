@@ -14,19 +14,19 @@
 use crate::continuation::path::mpec_verification;
 use crate::continuation::path::step_control::AcceptedStep;
 use crate::continuation::path::tolerances::{ADAPTED_ARC_LENGTH, MODE_BOUNDARY_TOLERANCE, POINT_DISTANCE};
-use crate::continuation::path_state::trace::PathTrace;
+use crate::continuation::path_state::path_context::PathTrace;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::closing_equation::ArcLengthEquation;
-use crate::mechanics::multi_contact::reaction_split::agree;
+use crate::mechanics::multi_contact::reaction_sharing::agree;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::natural_residual;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::result::program_iterate::{ContactIterate, ProgramIterate};
 use crate::step::corrector::cost_counters::Work;
-use crate::step::increment_mpec::search;
+use crate::step::increment_mpec::relaxation_sequence;
 use crate::step::increment_mpec::{IncrementProgram, ProgramCounts, ProgramEnd, Searched};
-use crate::step::segment::{Reached, StepStart};
+use crate::step::mode_step::{Reached, StepStart};
 use std::sync::Arc;
 
 /// Largest number of searches for one increment, `γ1` adapted from one to the next.
@@ -77,18 +77,24 @@ fn search_end(trace: &PathTrace<'_>, rate: &Rate, accepted: &AcceptedStep) -> (O
     let ahead = base.advanced(rate, step);
     let mut program =
         mpec_verification::increment_program(loading, trace.at.totals.force_scale, (base, &ahead), rate, step);
-    search::stay_near(&mut program);
+    relaxation_sequence::stay_near(&mut program);
     let predicted = program.variables_at(rate);
-    let (mut start, mut relaxation) = (predicted.clone(), search::first_relaxation(&program));
+    let (mut start, mut relaxation) = (predicted.clone(), relaxation_sequence::first_relaxation(&program));
     for _ in 0..MOST_SEARCHES {
-        let searched =
-            search::search_from(&program, &start, relaxation, modes, trace.iterates.is_some(), &trace.cancel);
+        let searched = relaxation_sequence::search_from(
+            &program,
+            &start,
+            relaxation,
+            modes,
+            trace.iterates.is_some(),
+            &trace.cancel,
+        );
         note(trace, &program, &searched, &mut left);
         if trace.cancel.is_cancelled() {
             break;
         }
         let Some(end) = searched.end else {
-            let Some(tighter) = search::tighter(relaxation) else { break };
+            let Some(tighter) = relaxation_sequence::tighter(relaxation) else { break };
             (start, relaxation) = (predicted.clone(), tighter);
             continue;
         };
@@ -107,10 +113,10 @@ fn search_end(trace: &PathTrace<'_>, rate: &Rate, accepted: &AcceptedStep) -> (O
         }
         // Away from the path: too large a relaxation led the search elsewhere.
         let is_off = !is_near || (end.size - 1.0).abs() <= ADAPTED_ARC_LENGTH;
-        match search::tighter(relaxation).filter(|_| is_off) {
+        match relaxation_sequence::tighter(relaxation).filter(|_| is_off) {
             Some(tighter) => (start, relaxation) = (predicted.clone(), tighter),
             None => {
-                search::adapt_arc_weight(&mut program, end.size);
+                relaxation_sequence::adapt_arc_weight(&mut program, end.size);
                 start = end.variables;
             }
         }
@@ -124,7 +130,7 @@ fn note(trace: &PathTrace<'_>, program: &IncrementProgram<'_>, searched: &Search
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let number = left.counts.len() as u64;
     for iterate in &searched.iterates {
-        let (state, contacts) = search::contacts_at(program, &iterate.x);
+        let (state, contacts) = relaxation_sequence::contacts_at(program, &iterate.x);
         let contacts = contacts.into_iter().filter_map(|at| {
             let (node, obstacle) = trace.names().nth(at.contact)?;
             Some(ContactIterate {
@@ -139,7 +145,7 @@ fn note(trace: &PathTrace<'_>, program: &IncrementProgram<'_>, searched: &Search
         left.iterates.push(ProgramIterate {
             program: number,
             relaxation: iterate.relaxation,
-            size: search::arc_length_ratio(program, &iterate.x),
+            size: relaxation_sequence::arc_length_ratio(program, &iterate.x),
             load_factor: trace.scene.stages[trace.at.stage].load_factor(state.load),
             violation: iterate.violation,
             contacts: contacts.collect(),

@@ -4,22 +4,22 @@
 //! The point reached by the path is shown to solve the increment's program, without a quadratic program; where this
 //! fails, the program is solved from the given direction.
 
-use crate::branching::directions::choice::DirectionChoice;
+use crate::branching::directions::feasible_direction::DirectionChoice;
 use crate::complementarity::mpec::Problem;
 use crate::continuation::path::tolerances::{
     DOUBTFUL_LENGTH, FIRST_TRIAL_SHARE, SHARE_BEFORE_CHANGE, SHORTENING_FACTOR, SHORTEST_RESOLVED_LENGTH,
     SMALLEST_MODE_EXTENT,
 };
-use crate::continuation::path_state::trace::PathTrace;
+use crate::continuation::path_state::path_context::PathTrace;
 use crate::mechanics::contact::Mode;
-use crate::mechanics::multi_contact::reaction_split::agree;
+use crate::mechanics::multi_contact::reaction_sharing::agree;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::mechanics::problem::tolerances::CONTACT_TOLERANCE;
 use crate::step::event_functions;
 use crate::step::increment_mpec::certificate;
 use crate::step::increment_mpec::{Arrived, ForeseenModes, IncrementProgram, Named, ProgramCounts};
-use crate::step::segment::{Reached, StepStart};
+use crate::step::mode_step::{Reached, StepStart};
 
 /// Number of attempts with the whole program, for shorter and shorter increments.
 const TRIALS: usize = 3;
@@ -159,11 +159,12 @@ fn way_to_next_change(trace: &PathTrace<'_>, modes: &[Mode], rate: &Rate) -> f64
     let forces = trace.at.totals.force_scale;
     event_functions::of_mode(loading, modes, state, rate)
         .into_iter()
-        .filter_map(|watch| {
-            let value = watch.value(loading, modes, state, rate);
-            let slope = watch.slope(loading, modes, state, rate)?;
+        .filter_map(|event_function| {
+            let value = event_function.value(loading, modes, state, rate);
+            let slope = event_function.slope(loading, modes, state, rate)?;
             // A quantity that is zero at the present point does not lie ahead.
-            (value > CONTACT_TOLERANCE * watch.scale(loading, state, forces) && slope < 0.0).then(|| value / -slope)
+            (value > CONTACT_TOLERANCE * event_function.scale(loading, state, forces) && slope < 0.0)
+                .then(|| value / -slope)
         })
         .fold(f64::INFINITY, f64::min)
 }

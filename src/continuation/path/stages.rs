@@ -1,18 +1,18 @@
 //! The beginning and the end of a stage, and the transition to the next.
 
-use crate::branching::directions::choice::{self, PriorMotion};
-use crate::branching::selection::decision;
-use crate::continuation::path_state::event_names::describe_start;
-use crate::continuation::path_state::progress::{Phase, StageCounts};
-use crate::continuation::path_state::trace::{Emitted, PathTrace};
+use crate::branching::directions::feasible_direction::{self, PriorMotion};
+use crate::branching::selection::selection_rule;
+use crate::continuation::path_state::event_descriptions::describe_start;
+use crate::continuation::path_state::path_context::{Emitted, PathTrace};
+use crate::continuation::path_state::resumable_state::{Phase, StageCounts};
 use crate::continuation::path_state::visited_states::VisitedStates;
 use crate::mechanics::equations::ModeSystem;
-use crate::mechanics::equations::stage_criteria::End;
+use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::state::Rate;
 use crate::result::increment::{Increment, Point, PointKind};
 use crate::result::stop_reason::StopReason;
 use crate::step::corrector::newton;
-use crate::step::event_functions::Watch;
+use crate::step::event_functions::EventFunction;
 use crate::step::tolerances::BOUND_TOLERANCE;
 
 /// The row with which a stage begins: the directions there, one of them taken. Where a bound of the stage is already
@@ -29,12 +29,17 @@ pub(crate) fn begin_stage(trace: &mut PathTrace<'_>) -> Increment {
     let (mut options, mut taken) = (Vec::new(), None);
     if !trace.at.stage_over {
         let state = &trace.at.here.state;
-        let mut decision =
-            decision::decide(trace.loading(), state, &trace.standings(state), PriorMotion::StageStart, trace.rules());
+        let mut decision = selection_rule::decide(
+            trace.loading(),
+            state,
+            &trace.standings(state),
+            PriorMotion::StageStart,
+            trace.rules(),
+        );
         trace.take(&mut decision);
         trace.at.begun = trace.at.here.rate.clone().map(|rate| (trace.at.here.state.clone(), rate));
         trace.at.step = trace.at.step.min(trace.scene.analysis.arc_length.initial);
-        point.bifurcation = choice::is_bifurcation(&decision.options, decision.taken, None);
+        point.bifurcation = feasible_direction::is_bifurcation(&decision.options, decision.taken, None);
         point.unexplored_modes = decision.unexplored;
         point.degenerate = decision.degenerate;
         if let Some(reason) = decision.stop {
@@ -70,7 +75,7 @@ fn bound_is_met(trace: &PathTrace<'_>) -> bool {
         load: 0.0,
         reactions: here.state.reactions.clone(),
     };
-    let left = |end: &End| Watch::End(*end).value(trace.loading(), &here.modes, &here.state, &still);
+    let left = |end: &End| EventFunction::End(*end).value(trace.loading(), &here.modes, &here.state, &still);
     trace.scene.stages[trace.at.stage].ends.iter().any(|end| left(end) <= 0.0)
 }
 
@@ -98,7 +103,7 @@ pub(crate) fn next_stage(trace: &mut PathTrace<'_>) -> bool {
 /// the load is then set exactly.
 pub(crate) fn at_bound(trace: &mut PathTrace<'_>, rate: &Rate) -> bool {
     let here = &trace.at.here;
-    let left = |end: &End| Watch::End(*end).value(trace.loading(), &here.modes, &here.state, rate);
+    let left = |end: &End| EventFunction::End(*end).value(trace.loading(), &here.modes, &here.state, rate);
     let met = trace.scene.stages[trace.at.stage].ends.iter().find(|end| left(end) <= BOUND_TOLERANCE);
     if let Some(End::Load { bound, .. }) = met {
         trace.at.here.state.load = *bound;

@@ -2,22 +2,22 @@
 
 use crate::branching::bifurcation::locate::{self, Crossing, Located, LocatedEnd};
 use crate::branching::bifurcation::singularity::test_functions::{self, Signature, SignatureChange};
-use crate::branching::bifurcation::{bound_at_singularity, simultaneous_limit_points};
+use crate::branching::bifurcation::{simultaneous_limit_points, stage_end_near_singular_point};
 use crate::continuation::contact_changes::prediction;
 use crate::continuation::contact_changes::prediction::ForeseenChange;
 use crate::continuation::contact_changes::simultaneous;
 use crate::continuation::contact_changes::simultaneous::Joined;
 use crate::continuation::path::step_control;
 use crate::continuation::path::tolerances::{LARGEST_SHARE_OF_STEP, NEXT_CHANGE_RATIO};
-use crate::continuation::path_state::progress::PresentPoint;
-use crate::continuation::path_state::trace::PathTrace;
+use crate::continuation::path_state::path_context::PathTrace;
+use crate::continuation::path_state::resumable_state::PresentPoint;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::problem::natural_residual;
 use crate::mechanics::problem::state::Rate;
 use crate::step::corrector::cached_factorisation::CachedFactorisation;
 use crate::step::corrector::cost_counters::Work;
-use crate::step::event_functions::Watch;
-use crate::step::segment::{Attempt, Reached, Refused, StepStart};
+use crate::step::event_functions::EventFunction;
+use crate::step::mode_step::{Attempt, Reached, Refused, StepStart};
 
 /// Largest number of shorter steps tried where a change of signature cannot be resolved.
 const MOST_UNRESOLVED: u64 = 4;
@@ -126,12 +126,12 @@ pub(crate) fn try_step(
     let is_lost = match &outcome {
         Ok(ending) => {
             let reached = ending.reached();
-            matches!(reached.event, Some(Watch::End(_))) && reached.determinant.is_none()
+            matches!(reached.event, Some(EventFunction::End(_))) && reached.determinant.is_none()
         }
         Err(refused) => matches!(refused, Refused::Newton(_)),
     };
     let bounded = is_lost
-        .then(|| bound_at_singularity::beside_singular(&start, step, ends, here.load_sign, tries.known, work))
+        .then(|| stage_end_near_singular_point::beside_singular(&start, step, ends, here.load_sign, tries.known, work))
         .flatten();
     let back = outcome.as_ref().ok().and_then(|ending| step_control::way_back(trace, &start, ending.reached(), work));
     let tried = if let Some(back) = back {
@@ -282,7 +282,7 @@ fn crossing_in_mode(
     let Some(before) = before else {
         // The start is singular: the signature is known from the end of the step on.
         let state = &reached.corrected.state;
-        let is_limit = matches!(reached.event, Some(Watch::LoadRate { .. }));
+        let is_limit = matches!(reached.event, Some(EventFunction::LoadRate { .. }));
         let regular = if is_limit { None } else { test_functions::sign_at_end(start, &reached, work) };
         let after = regular
             .and_then(|sign| Signature::with_determinant(start.loading, start.modes, start.state, state, sign, work));

@@ -4,8 +4,8 @@ use crate::algebra::scalar_root::find_root;
 use crate::branching::bifurcation::locate::Crossing;
 use crate::branching::bifurcation::singularity::test_functions::Signature;
 use crate::branching::directions::arrival_tangent::Incoming;
-use crate::branching::directions::choice::PriorMotion;
-use crate::branching::selection::decision;
+use crate::branching::directions::feasible_direction::PriorMotion;
+use crate::branching::selection::selection_rule;
 use crate::continuation::contact_changes::piecewise_linear;
 use crate::continuation::contact_changes::prediction::{self, ForeseenChange};
 use crate::continuation::contact_changes::simultaneous::may_join_at;
@@ -16,24 +16,24 @@ use crate::continuation::path::tolerances::{
     WORK_ROUND_OFF,
 };
 use crate::continuation::path::{mpec_increments, mpec_verification};
-use crate::continuation::path_state::step_quantum::quantised;
+use crate::continuation::path_state::path_context::PathTrace;
+use crate::continuation::path_state::step_factor_rounding::quantised;
 use crate::continuation::path_state::tolerances::{ENERGY_ROUND_OFF, SAME_STATE};
 use crate::continuation::path_state::totals::Added;
-use crate::continuation::path_state::trace::PathTrace;
 use crate::mechanics::contact::all_continue;
 use crate::mechanics::equations::ModeSystem;
-use crate::mechanics::equations::stage_criteria::End;
-use crate::mechanics::problem::energy;
+use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::state::{Rate, State};
+use crate::mechanics::problem::work_and_dissipation;
 use crate::mechanics::structure::elements::COLLAPSED;
 use crate::model::request::{Events, Method};
 use crate::result::increment::Energy;
 use crate::result::stop_reason::StopReason;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
-use crate::step::event_functions::Watch;
+use crate::step::event_functions::EventFunction;
 use crate::step::interpolation::unit;
-use crate::step::segment::{Reached, Refused, StepStart};
+use crate::step::mode_step::{Reached, Refused, StepStart};
 
 /// Largest number of consecutive creeping steps: the sharpest bend, there and back, takes fewer at the turn for which a
 /// step aims, and a path that takes more oscillates.
@@ -104,8 +104,8 @@ fn step_along(trace: &mut PathTrace<'_>, rate: &Rate, sought: &mut Sought) -> Re
                     was_shortened = true;
                 }
             },
-            Err(Refused::AtStart(watch)) if watch.is_of_contact() && mode_ends_here(trace, rate) => {
-                let mut accepted = balance(trace, rate, without_step(trace, watch, rate));
+            Err(Refused::AtStart(event_function)) if event_function.is_of_contact() && mode_ends_here(trace, rate) => {
+                let mut accepted = balance(trace, rate, without_step(trace, event_function, rate));
                 accepted.mode_named = is_named_by_program(trace).then_some(true);
                 return Ok(accepted);
             }
@@ -151,7 +151,8 @@ fn sought_step(trace: &mut PathTrace<'_>) -> Sought {
     let may_join = trace.at.waiting.is_over() && may_join_changes(trace);
     // Changes within an ordinary step may be several that are treated together.
     let ahead = piecewise_linear::next_event_ahead(trace);
-    let joins = |event: &ForeseenChange| may_join && may_join_at(trace.loading(), &trace.at.here.modes, event.watch);
+    let joins =
+        |event: &ForeseenChange| may_join && may_join_at(trace.loading(), &trace.at.here.modes, event.event_function);
     let jump = ahead.filter(|event| event.step > ordinary || !joins(event));
     trace.look_ahead(jump.map_or(ordinary, |event| event.step));
     let rate = trace.at.here.rate.as_ref().filter(|_| jump.is_none());
@@ -237,19 +238,19 @@ fn mode_ends_here(trace: &PathTrace<'_>, rate: &Rate) -> bool {
     let here = &trace.at.here;
     let standings = trace.standings(&here.state);
     let before = PriorMotion::Incoming(Incoming::along(rate));
-    let decision = decision::decide(trace.loading(), &here.state, &standings, before, trace.rules());
+    let decision = selection_rule::decide(trace.loading(), &here.state, &standings, before, trace.rules());
     decision.taken.is_none_or(|index| !all_continue(&decision.options[index].modes, &here.modes))
 }
 
 /// The present point again, as the place where the mode ends: two changes at one state, the second of which was not
 /// detected at the point itself, are two points of the path.
-fn without_step(trace: &PathTrace<'_>, watch: Watch, rate: &Rate) -> Box<Reached> {
+fn without_step(trace: &PathTrace<'_>, event_function: EventFunction, rate: &Rate) -> Box<Reached> {
     let here = &trace.at.here;
     let system = ModeSystem::new(trace.loading(), &here.modes, &here.state);
     let mut corrected = newton::judged(&system, here.state.clone(), trace.at.totals.force_scale);
     (corrected.state, corrected.modes) = (here.state.clone(), here.modes.clone());
     let mut point = Reached::new(corrected, rate.clone(), 0.0, here.drift.as_ref().map_or(0.0, Rate::size));
-    (point.drift, point.event) = (here.drift.clone(), Some(watch));
+    (point.drift, point.event) = (here.drift.clone(), Some(event_function));
     point
 }
 
@@ -297,7 +298,7 @@ fn balance(trace: &PathTrace<'_>, rate: &Rate, reached: Box<Reached>) -> Accepte
     let start = (&trace.at.here.state, rate);
     let end = (&reached.corrected.state, &reached.rate);
     let (loading, modes, turned) = (trace.loading(), &trace.at.here.modes, rate.angle(&reached.rate));
-    let (external_work, dissipated) = energy::work_and_dissipation(loading, modes, start, end, turned);
+    let (external_work, dissipated) = work_and_dissipation::work_and_dissipation(loading, modes, start, end, turned);
     let strain = trace.scene.structure.strain_energy(&reached.corrected.state.displacement) - trace.initial_strain;
     let (step, force_scale) = (reached.step, reached.corrected.force_scale);
     let added = Added { step, external_work, dissipated, strain, force_scale };
@@ -361,7 +362,7 @@ fn next_step_factor(trace: &PathTrace<'_>, accepted: &AcceptedStep, tried: f64, 
 mod tests {
     use super::*;
     use crate::check::scenes;
-    use crate::continuation::path_state::progress::Progress;
+    use crate::continuation::path_state::resumable_state::Progress;
     use crate::continuation::scene::Scene;
     use crate::model::request::ArcLength;
     use crate::resources::cancel::CancelFlag;

@@ -9,14 +9,14 @@
 //!
 //! A contact out of reach is free, without reaction: the equations of the other contacts are those of the whole scene.
 
-use crate::continuation::path_state::progress::Progress;
+use crate::continuation::path_state::resumable_state::Progress;
 use crate::continuation::path_state::tolerances::DISTANCE_ROUND_OFF;
 use crate::continuation::scene::Scene;
-use crate::continuation::scene::recorded_rows::fastest;
+use crate::continuation::scene::recorded_contacts::fastest;
 use crate::continuation::scene::tolerances::REACH_IN_STEPS;
 use crate::mechanics::contact::ContactPair;
 use crate::mechanics::problem::loading::{LoadPattern, Loading};
-use crate::mechanics::problem::node_forces::Corner;
+use crate::mechanics::problem::node_contact_forces::Corner;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 

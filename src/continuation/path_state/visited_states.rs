@@ -2,9 +2,8 @@
 //!
 //! Where a direction is taken the state is compared with those kept and is kept itself, until their number reaches its
 //! limit; then every second state is removed and from there on only every second one is kept, and so on. Every state is
-//! compared, so that a path along a closed curve is detected: at its first return while no state has been removed; with
-//! one state in `stride` kept, fewer than `stride` states later, since one of these states is known from the previous
-//! cycle.
+//! compared, so that a path along a closed curve is detected: at its first return if no state has been removed; if only
+//! every `stride`-th state is kept, fewer than `stride` states later.
 
 use crate::continuation::scene::Scene;
 use crate::mechanics::contact::{Mode, Reaction};

@@ -2,7 +2,7 @@
 //! displacement.
 
 use crate::algebra::Factorisation;
-use crate::continuation::penalty::system::{PenaltyPoint, PenaltySystem};
+use crate::continuation::penalty::penalty_equations::{PenaltyPoint, PenaltySystem};
 use crate::continuation::penalty::tolerances::ROOT_TIE_TOLERANCE;
 use crate::mechanics::problem::state::State;
 use crate::resources::cancel::CancelFlag;

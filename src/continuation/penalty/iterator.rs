@@ -1,16 +1,16 @@
 //! The path as an iterator: points accepted, stages, rows.
 
 use crate::algebra::Factorisation;
-use crate::continuation::path_state::event_names::{describe_change, describe_start};
-use crate::continuation::path_state::progress::{Phase, StageCounts};
-use crate::continuation::path_state::record::{self, RowSource};
+use crate::continuation::path_state::event_descriptions::{describe_change, describe_start};
+use crate::continuation::path_state::resumable_state::{Phase, StageCounts};
+use crate::continuation::path_state::row_conversion::{self, RowSource};
 use crate::continuation::path_state::totals::{Added, Totals};
 use crate::continuation::penalty::increment::PenaltyIncrement;
 use crate::continuation::penalty::law::Penalties;
-use crate::continuation::penalty::record::{give, modes, work_and_dissipation};
+use crate::continuation::penalty::penalty_equations::{PenaltyPoint, PenaltySystem};
+use crate::continuation::penalty::penalty_work::{give, modes, work_and_dissipation};
 use crate::continuation::penalty::step_control;
 use crate::continuation::penalty::step_control::AcceptedPenaltyStep;
-use crate::continuation::penalty::system::{PenaltyPoint, PenaltySystem};
 use crate::continuation::scene::Scene;
 use crate::mechanics::problem::loading::{LoadPattern, Loading};
 use crate::mechanics::problem::state::State;
@@ -215,7 +215,7 @@ impl<'a> RegularisedPath<'a> {
             elapsed_s: self.began.elapsed().as_secs_f64(),
             mode_named: None,
         };
-        let row = record::increment(self.scene, &self.totals, &row);
+        let row = row_conversion::increment(self.scene, &self.totals, &row);
         self.totals.note(&row);
         row
     }

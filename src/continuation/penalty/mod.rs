@@ -25,18 +25,18 @@
 //! | file | contents |
 //! |---|---|
 //! | `law` | one contact: reaction and its derivative |
-//! | `system` | residual and tangent of the whole structure |
+//! | `penalty_equations` | residual and tangent of the whole structure |
 //! | `increment` | predictor and corrector of one increment |
 //! | `step_control` | step lengths, and the increment that ends a stage |
 //! | `iterator` | the iterator: points accepted, stages, rows |
-//! | `record` | energies and rows |
+//! | `penalty_work` | energies and rows |
 
 pub(crate) mod increment;
 pub(crate) mod iterator;
 pub(crate) mod law;
-pub(crate) mod record;
+pub(crate) mod penalty_equations;
+pub(crate) mod penalty_work;
 pub(crate) mod step_control;
-pub(crate) mod system;
 #[cfg(test)]
 mod tests;
 pub(crate) mod tolerances;

@@ -5,9 +5,9 @@ use crate::continuation::penalty::increment::{
     Converged, IncrementConstraint, Limits, PenaltyFailure, PenaltyIncrement,
 };
 use crate::continuation::penalty::iterator::RegularisedPath;
-use crate::continuation::penalty::system::PenaltyPoint;
+use crate::continuation::penalty::penalty_equations::PenaltyPoint;
 use crate::continuation::penalty::tolerances::LARGEST_STEP_GROWTH;
-use crate::mechanics::equations::stage_criteria::End;
+use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::structure::elements::COLLAPSED;
 use crate::model::request::LoadSign;
 use crate::result::stop_reason::StopReason;

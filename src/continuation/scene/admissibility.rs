@@ -1,13 +1,13 @@
 //! Admissibility of scenes: scenes that cannot be traced are refused, with the changes that would make them admissible.
 
-use crate::algebra::dense::assembly::Sink;
+use crate::algebra::dense::matrix_sink::Sink;
 use crate::algebra::sparse::Bordered;
 use crate::algebra::{Factorisation, null_space};
 use crate::continuation::scene::Scene;
 use crate::continuation::scene::stage_load::StageLoad;
 use crate::continuation::scene::tolerances::{ACCEPTED_IMBALANCE, CLOSED_GAP};
 use crate::mechanics::contact::vector::dot;
-use crate::mechanics::problem::contact_motion;
+use crate::mechanics::problem::contact_jacobian;
 use crate::model::request::Model;
 use crate::model::{InputError, InputErrors};
 use itertools::Itertools;
@@ -104,7 +104,7 @@ fn hold_closed_contacts(scene: &Scene, stiffness: f64, matrix: &mut impl Sink) {
         let held = 1 + contact.tangents();
         for vector in [frame.normal, frame.tangents[0], frame.tangents[1]].iter().take(held) {
             let mut own: Vec<(usize, f64)> = Vec::with_capacity(structure.dimension);
-            contact_motion::each_column(structure, contact, &still, |freedom, column| {
+            contact_jacobian::each_column(structure, contact, &still, |freedom, column| {
                 own.extend(structure.unknown_of[freedom].map(|unknown| (unknown, dot(vector, column))));
             });
             for ((row, first), (column, second)) in own.iter().cartesian_product(&own) {

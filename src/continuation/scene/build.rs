@@ -1,6 +1,6 @@
 //! Conversion of the request's names and units to dimensionless numbers.
 
-use crate::continuation::scene::reported::Reported;
+use crate::continuation::scene::requested_contacts::Reported;
 use crate::continuation::scene::stage_load::StageLoad;
 use crate::continuation::scene::tolerances::COINCIDENCE_TOLERANCE;
 use crate::mechanics::contact::coulomb::CoulombFriction;
@@ -8,9 +8,9 @@ use crate::mechanics::contact::kinematics::Kinematics;
 use crate::mechanics::contact::obstacle::RigidSurface;
 use crate::mechanics::contact::vector::{Vector, size};
 use crate::mechanics::contact::{ContactPair, Sliding};
-use crate::mechanics::equations::stage_criteria::End;
+use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::loading::LoadPattern;
-use crate::mechanics::problem::node_forces::Corner;
+use crate::mechanics::problem::node_contact_forces::Corner;
 use crate::mechanics::structure::Structure;
 use crate::mechanics::structure::element_list::ElementList;
 use crate::mechanics::structure::elements::bar::Bar;

@@ -13,15 +13,15 @@
 pub(crate) mod admissibility;
 pub(crate) mod build;
 pub(crate) mod characteristic_stiffness;
-pub(crate) mod plan;
-pub(crate) mod recorded_rows;
-pub(crate) mod reported;
+pub(crate) mod omitted_features;
+pub(crate) mod recorded_contacts;
+pub(crate) mod requested_contacts;
 pub(crate) mod scales;
 pub(crate) mod stage_load;
 pub(crate) mod tolerances;
 
 use crate::mechanics::contact::ContactPair;
-use crate::mechanics::problem::node_forces::Corner;
+use crate::mechanics::problem::node_contact_forces::Corner;
 use crate::mechanics::structure::Structure;
 use crate::mechanics::structure::element_list::ElementList;
 use crate::model::request::{Analysis, JobRequest};
@@ -30,7 +30,7 @@ use crate::resources::budget::{self, Breach, Budget};
 use crate::result::displacements::Displacements;
 use crate::result::plan::Plan;
 use build::{Contacts, ScaledModel, build_contacts, build_stage, build_structure, first_contacts};
-pub(crate) use reported::Reported;
+pub(crate) use requested_contacts::Reported;
 use scales::{RequestScales, scales};
 pub(crate) use stage_load::StageLoad;
 use std::collections::HashMap;
@@ -166,8 +166,8 @@ impl Scene {
         };
         let no_displacements = Displacements::zero(model.nodes.keys().map(String::as_str), model.dimension);
         let analysis = request.analysis.clone();
-        let asked_rows = crate::continuation::scene::recorded_rows::asked_rows(request);
-        let jumps = crate::continuation::scene::plan::jumps(&analysis, &structure);
+        let asked_rows = crate::continuation::scene::recorded_contacts::asked_rows(request);
+        let jumps = crate::continuation::scene::omitted_features::jumps(&analysis, &structure);
         let mut scene = Self {
             structure,
             contacts,
@@ -181,7 +181,7 @@ impl Scene {
             jumps,
             plan,
         };
-        scene.plan.left_out.extend(crate::continuation::scene::plan::left_out(&scene));
+        scene.plan.left_out.extend(crate::continuation::scene::omitted_features::left_out(&scene));
         admissibility::refuse_mechanism(&scene)?;
         admissibility::refuse_imbalance(&scene)?;
         admissibility::refuse_dragged_supports(&scene, model)?;

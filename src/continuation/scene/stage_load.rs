@@ -1,6 +1,6 @@
 //! The load of a stage.
 
-use crate::mechanics::equations::stage_criteria::End;
+use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::resources::budget::Taken;
 use std::sync::Arc;

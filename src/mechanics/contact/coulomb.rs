@@ -4,8 +4,10 @@
 //! |r_t| <= μ r_n;      where a contact slips along d (a unit tangent):  r_t = -μ r_n d,  so that r = r_n (n - μ d)
 //! ```
 //!
-//! All consequences of the law for forces are in this module. Other modules ask for the friction bound, the direction
-//! of the force of a slip, or the distance of a force from the cone, and do not evaluate the law themselves.
+//! The friction bound, the direction of the force of a slip and the distance of a force from the cone are evaluated
+//! here alone. The law is homogeneous: the same functions give the rates of these quantities from the rates of the
+//! reactions. Sums of cones, the cones of the increment's program, the projection on the cone and the proofs of
+//! uniqueness have formulas of their own in the coefficient `μ`; another law has to replace these as well.
 
 use crate::mechanics::contact::Reaction;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled};

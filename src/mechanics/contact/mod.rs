@@ -10,7 +10,7 @@
 pub mod coulomb;
 pub(crate) mod frame;
 pub mod kinematics;
-pub mod least_norm_reactions;
+pub mod least_norm_projection;
 pub mod obstacle;
 pub(crate) mod tolerances;
 pub mod vector;

@@ -7,7 +7,7 @@
 //! Arc length after E. Riks, Int. J. Solids Struct. 15 (1979) 529, doi:10.1016/0020-7683(79)90081-7. An event function
 //! is another closing equation (`step::event_functions`).
 
-use crate::algebra::dense::assembly::Sink;
+use crate::algebra::dense::matrix_sink::Sink;
 use crate::mechanics::equations::{ModeSystem, matrix};
 use crate::mechanics::problem::state::{Rate, State};
 

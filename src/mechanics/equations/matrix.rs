@@ -1,12 +1,12 @@
 //! The matrix of the equations, dense and sparse.
 
-use crate::algebra::dense::assembly::Sink;
+use crate::algebra::dense::matrix_sink::Sink;
 use crate::algebra::sparse::Bordered;
 use crate::mechanics::contact::vector::{Vector, cross, dot, scaled};
 use crate::mechanics::equations::tolerances::SMALLEST_FRICTION_FORCE;
 use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, SuppressedMotion, Track, slip_integration};
-use crate::mechanics::problem::contact_motion;
-use crate::mechanics::problem::node_forces::force;
+use crate::mechanics::problem::contact_jacobian;
+use crate::mechanics::problem::node_contact_forces::force;
 use crate::mechanics::problem::state::{Rate, State};
 use nalgebra::DMatrix;
 
@@ -138,7 +138,7 @@ fn add_curvature(system: &ModeSystem<'_>, contact: usize, state: &State, matrix:
     let force = force(&system.loading.frame(contact, state), &state.reactions[contact]);
     let support_rate = |freedom: usize| system.loading.support_rate(freedom);
     let mut add = structure.over_unknowns(support_rate, |row, column, value| matrix.add(row, column, value));
-    contact_motion::each_curvature(structure, data, &state.displacement, &force, |row, column, value| {
+    contact_jacobian::each_curvature(structure, data, &state.displacement, &force, |row, column, value| {
         add(row, column, -value);
     });
 }

@@ -14,27 +14,27 @@
 //! (E. Riks, Int. J. Solids Struct. 15 (1979) 529, doi:10.1016/0020-7683(79)90081-7).
 
 pub mod closing_equation;
-pub(crate) mod deflation;
-pub(crate) mod factorisation;
+pub(crate) mod corrected_point;
 pub(crate) mod matrix;
+pub(crate) mod mode_factorisation;
+pub(crate) mod null_motion_suppression;
 pub(crate) mod rate_recovery;
 pub(crate) mod residual;
 pub(crate) mod scaled_rows;
 pub(crate) mod slip_integration;
-pub(crate) mod slip_turning;
-pub(crate) mod solution;
-pub(crate) mod stage_criteria;
+pub(crate) mod slip_turn_update;
+pub(crate) mod stage_end_criteria;
 pub(crate) mod tolerances;
 
 use crate::algebra::sparse::Holdings;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
 use crate::mechanics::contact::{Frame, Mode, Reaction};
+use crate::mechanics::equations::corrected_point::Corrected;
 use crate::mechanics::equations::slip_integration::{Start, Turn};
-use crate::mechanics::equations::solution::Corrected;
-use crate::mechanics::multi_contact::reaction_split;
+use crate::mechanics::multi_contact::reaction_sharing;
 use crate::mechanics::multi_contact::spatial::{Edge, beside};
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::node_forces::{free_directions, total_force};
+use crate::mechanics::problem::node_contact_forces::{free_directions, total_force};
 use crate::mechanics::problem::state::State;
 use nalgebra::DVector;
 use smallvec::SmallVec;
@@ -108,7 +108,7 @@ struct HeldDirections {
     directions: Vec<Vector>,
 }
 
-/// A motion that the equations leave undetermined and that `deflation` suppresses.
+/// A motion that the equations leave undetermined and that `null_motion_suppression` suppresses.
 struct SuppressedMotion {
     /// The left null vector `ψ`.
     column: DVector<f64>,
@@ -129,7 +129,7 @@ pub struct ModeSystem<'a> {
     pub(crate) size: usize,
     /// Whether a step shorter than the required one serves as well.
     pub(crate) may_be_shorter: bool,
-    /// Suppressed motions: see `deflation`.
+    /// Suppressed motions: see `null_motion_suppression`.
     suppressed: Vec<SuppressedMotion>,
     /// Computed when first needed.
     holdings: OnceCell<Holdings>,
@@ -275,7 +275,7 @@ impl<'a> ModeSystem<'a> {
 
     /// Replaces the reactions of contacts that hold a node together by those of least norm.
     pub(crate) fn share(&self, state: &mut State) {
-        reaction_split::share(self.loading, self.loading.corners, self.modes, state);
+        reaction_sharing::share(self.loading, self.loading.corners, self.modes, state);
     }
 
     /// The orthonormal directions in which a sticking contact holds its node and has a reaction: the normal and the

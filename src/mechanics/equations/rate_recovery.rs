@@ -3,8 +3,8 @@
 use crate::algebra::SystemFactorisation;
 use crate::mechanics::contact::vector::{add, cross};
 use crate::mechanics::contact::{Mode, Reaction};
-use crate::mechanics::equations::solution::Corrected;
-use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, factorisation, residual, slip_integration};
+use crate::mechanics::equations::corrected_point::Corrected;
+use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, mode_factorisation, residual, slip_integration};
 use crate::mechanics::problem::state::{Rate, State};
 use nalgebra::DVector;
 
@@ -135,7 +135,7 @@ pub(crate) fn modes_at(system: &ModeSystem<'_>, iterate: &Iterate) -> Vec<Mode> 
 /// of unit arc length, on the side of `towards`. `None` where the equations have no such vector or more than one.
 pub fn tangent(system: &ModeSystem<'_>, corrected: &Corrected, towards: &Rate) -> Option<Rate> {
     let iterate = system.iterate_of(corrected);
-    tangent_by(system, &factorisation::factorise_bordered(system, &iterate, towards)?, &iterate)
+    tangent_by(system, &mode_factorisation::factorise_bordered(system, &iterate, towards)?, &iterate)
 }
 
 pub(crate) fn tangent_by(

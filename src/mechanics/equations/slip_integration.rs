@@ -1,4 +1,4 @@
-//! The track of a node that slips along any tangent.
+//! Integrates the slip path (the track) of a node that can slip in any tangential direction.
 //!
 //! The direction `d` opposes the traction and turns as the node moves. Along the track, of length `h` in an increment,
 //! let `θ` be the angle of `d` and `κ = dθ/dh` its turn. The chord of the increment has the angle

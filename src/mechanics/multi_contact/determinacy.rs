@@ -6,7 +6,7 @@ use crate::mechanics::multi_contact::moving_planes::Carried;
 use crate::mechanics::multi_contact::spatial::ContactGroup;
 use crate::mechanics::multi_contact::tolerances::INDEPENDENCE_SINE;
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::node_forces::{free_directions, is_driven, is_in_plane, move_apart};
+use crate::mechanics::problem::node_contact_forces::{free_directions, is_driven, is_in_plane, move_apart};
 use crate::mechanics::problem::state::State;
 
 /// Whether a node is in contact with several obstacles such that the bounds on the forces that hold it are not known:

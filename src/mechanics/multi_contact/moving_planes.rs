@@ -19,10 +19,10 @@ use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::obstacle::RigidSurface;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size, unit};
 use crate::mechanics::contact::{Frame, Mode, Reaction};
-use crate::mechanics::multi_contact::reaction_split;
+use crate::mechanics::multi_contact::reaction_sharing;
 use crate::mechanics::multi_contact::tolerances::{INDEPENDENCE_SINE, RESTING_VELOCITY};
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::node_forces::Corner;
+use crate::mechanics::problem::node_contact_forces::Corner;
 use crate::mechanics::problem::state::{Rate, State};
 
 /// A node between two planes that move against each other.
@@ -101,7 +101,7 @@ impl Carried {
                 let holder = usize::from(own[0] != Mode::Stick);
                 self.contacts.iter().for_each(|contact| shared.reactions[*contact] = Reaction::default());
                 shared.reactions[self.contacts[holder]] = whole(holder);
-                reaction_split::share(loading, &[Corner { contacts: self.contacts.to_vec() }], modes, &mut shared);
+                reaction_sharing::share(loading, &[Corner { contacts: self.contacts.to_vec() }], modes, &mut shared);
                 self.contacts.map(|contact| shared.reactions[contact])
             }
         }

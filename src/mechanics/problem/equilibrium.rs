@@ -1,11 +1,11 @@
-//! Equilibrium of a structure under its loads: what the internal forces leave over against the loads.
+//! Equilibrium of a structure under its loads: the out-of-balance force.
 //!
 //! ```text
 //! G(u, s, r) = f_int(u) - s p - h - Σ_c B_cᵀ r_c
 //! ```
 //!
 //! `p`: the load pattern; `h`: the constant loads of earlier stages; `r_c`: the force of a contact, whose part
-//! `contact_motion` adds. Newton's method, the increment's program, the penalty method and the energy take `G` from here;
+//! `contact_jacobian` adds. Newton's method, the increment's program, the penalty method and the energy take `G` from here;
 //! the tangent `K = ∂f_int/∂u` comes from `Structure::each_stiffness`, by unknowns through `Structure::over_unknowns`.
 
 use crate::mechanics::problem::loading::Loading;
@@ -22,7 +22,7 @@ pub struct ForceSizes {
     pub internal: f64,
 }
 
-/// Writes `f_int(u) - s p - h` over all degrees of freedom: `G` without contacts.
+/// Writes `f_int(u) - s p - h` over all degrees of freedom: the out-of-balance force `G` without contacts.
 pub fn write_unbalanced(loading: Loading<'_>, state: &State, force: &mut [f64]) -> ForceSizes {
     let carried = loading.structure.internal_force(&state.displacement, force);
     let mut sizes = ForceSizes { carried, applied: 0.0, internal: 0.0 };

@@ -2,8 +2,8 @@
 
 use crate::mechanics::contact::vector::{Vector, add, scaled};
 use crate::mechanics::contact::{ContactPair, Frame, Reaction};
-use crate::mechanics::problem::contact_motion;
-use crate::mechanics::problem::node_forces::Corner;
+use crate::mechanics::problem::contact_jacobian;
+use crate::mechanics::problem::node_contact_forces::Corner;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::mechanics::problem::tolerances::USUAL_DISPLACEMENT;
 use crate::mechanics::structure::Structure;
@@ -64,7 +64,7 @@ impl Loading<'_> {
     /// The displacement of a contact less that of its obstacle, in the obstacle's axes.
     #[inline(always)]
     pub fn relative(&self, contact: usize, state: &State) -> Vector {
-        let moved = contact_motion::moved(self.structure, &self.contacts[contact], &state.displacement);
+        let moved = contact_jacobian::moved(self.structure, &self.contacts[contact], &state.displacement);
         let shifted = add(&moved, -1.0, &self.held.shifts[contact]);
         add(&shifted, -state.load, &self.pattern.shifts[contact])
     }
@@ -73,14 +73,14 @@ impl Loading<'_> {
     #[inline(always)]
     pub fn relative_rate(&self, contact: usize, state: &State, rate: &Rate) -> Vector {
         let contact_data = &self.contacts[contact];
-        let moved = contact_motion::velocity(self.structure, contact_data, &state.displacement, &rate.displacement);
+        let moved = contact_jacobian::velocity(self.structure, contact_data, &state.displacement, &rate.displacement);
         add(&moved, -rate.load, &self.pattern.shifts[contact])
     }
 
     /// Calls `each(freedom, column)` with the motion of a contact per degree of freedom at a state.
     #[inline(always)]
     pub fn each_column(&self, contact: usize, state: &State, each: impl FnMut(usize, &Vector)) {
-        contact_motion::each_column(self.structure, &self.contacts[contact], &state.displacement, each);
+        contact_jacobian::each_column(self.structure, &self.contacts[contact], &state.displacement, each);
     }
 
     /// The velocity of a contact less that of its obstacle, per load factor, due to the motion of supports and obstacle

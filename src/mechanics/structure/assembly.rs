@@ -4,7 +4,7 @@
 //! u_e = A_e u,      f_int = Σ_e A_eᵀ f_e(u_e),      K = Σ_e A_eᵀ K_e(u_e) A_e
 //! ```
 //!
-//! `A_e` selects the degrees of freedom of the element `e`; the list [`ElementAt::freedoms`] stands for it. Sums run over
+//! `A_e` selects the degrees of freedom of the element `e`; it is stored as the list [`ElementAt::freedoms`]. Sums run over
 //! the elements in the order of the input.
 
 use crate::mechanics::structure::element_list::{ElementList, ElementRun};

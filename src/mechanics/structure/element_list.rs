@@ -1,7 +1,7 @@
 //! The elements of a structure in the order of the input, kept in runs of one kind.
 //!
-//! Forces and tangents are computed for several elements of a run in one call. The call through the interface then costs
-//! as much as for one element, and the compiler fits the kind's formulas into the loop.
+//! Forces and tangents are computed for several elements of a run together: one dynamic call serves all of them, and the
+//! compiler can inline the formulas of the kind.
 
 use crate::mechanics::structure::elements::FiniteElement;
 use std::any::Any;

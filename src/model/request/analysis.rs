@@ -1,6 +1,6 @@
 //! How a path is traced.
 
-pub use crate::branching::directions::choice::Selection;
+pub use crate::branching::directions::feasible_direction::Selection;
 use crate::model::request::record::Record;
 use serde::{Deserialize, Serialize};
 

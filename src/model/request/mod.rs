@@ -15,7 +15,7 @@ pub mod variation_summary;
 
 use serde::{Deserialize, Serialize};
 
-pub use crate::branching::directions::choice::Selection;
+pub use crate::branching::directions::feasible_direction::Selection;
 pub use crate::mechanics::structure::elements::bar::Strain;
 pub use analysis::{Analysis, ArcLength, Certificate, Events, Explore, LoadSign, Method, Mpec, Regularised};
 pub use record::{ContactRange, Record, RecordedContact, RecordedContacts};

@@ -1,13 +1,13 @@
 //! Factorisations that earlier solves leave for reuse.
 //!
 //! Where the path is straight, the equations at the start of a step are those at its end: the factorisation that gave
-//! the direction serves along the whole step. It agrees with a fresh factorisation to the last bit: a path resumed from
+//! the direction is reused throughout the step. It agrees with a fresh factorisation to the last bit: a path resumed from
 //! a checkpoint has none, computes one, and continues identically. Elsewhere the factorisation that led to a contact
 //! change serves to find the directions there, within the same increment.
 
 use crate::algebra::SystemFactorisation;
 use crate::algebra::sparse::SparseFactorisation;
-use crate::mechanics::equations::{ModeSystem, factorisation, matrix};
+use crate::mechanics::equations::{ModeSystem, matrix, mode_factorisation};
 use crate::mechanics::problem::linearity;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::Rate;
@@ -48,9 +48,10 @@ impl CachedFactorisation {
         let is_its_own = |sparse: &SparseFactorisation| sparse.size() == system.size();
         let bordered = self.0.and_then(Arc::into_inner).filter(is_its_own).and_then(|sparse| {
             let sparse = sparse.with_last_row(|matrix| matrix::border(system, matrix, rate))?;
-            factorisation::is_kept(system, &sparse).then(|| SystemFactorisation::Sparse(Arc::new(sparse)))
+            mode_factorisation::is_kept(system, &sparse).then(|| SystemFactorisation::Sparse(Arc::new(sparse)))
         });
-        bordered.or_else(|| factorisation::factorise_bordered(system, &system.iterate(system.anchor.clone()), rate))
+        bordered
+            .or_else(|| mode_factorisation::factorise_bordered(system, &system.iterate(system.anchor.clone()), rate))
     }
 }
 

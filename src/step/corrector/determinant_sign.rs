@@ -1,1 +1,2 @@
-//! When the sign of a factorisation's determinant is certain.
+//! Decides whether the sign of a factorisation's determinant is certain: whether its smallest pivot is far enough from
+//! zero.

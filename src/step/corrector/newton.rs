@@ -1,11 +1,11 @@
 //! Newton's method on the equations of a mode.
 
 use crate::algebra::SystemFactorisation;
-use crate::algebra::dense::assembly::Sink;
+use crate::algebra::dense::matrix_sink::Sink;
 use crate::mechanics::contact::vector::{self, add, dot};
 use crate::mechanics::equations::closing_equation::ClosingEquation;
-use crate::mechanics::equations::solution::{Corrected, Failure};
-use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, factorisation, rate_recovery, residual};
+use crate::mechanics::equations::corrected_point::{Corrected, Failure};
+use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, mode_factorisation, rate_recovery, residual};
 use crate::mechanics::problem::state::{Rate, State};
 use crate::mechanics::problem::tolerances::{NEGLIGIBLE_FORCE, USUAL_DISPLACEMENT};
 use crate::step::corrector::cost_counters::Work;
@@ -309,7 +309,7 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
         let once = factorisation.reused || (factorisation.is_own && error <= SMALL_ERROR);
         if !factorisation.reused && !std::mem::take(&mut factorisation.is_own) {
             let put_closing = |matrix: &mut dyn Sink| closing.write_gradient(system, &iterate.state, matrix);
-            factorisation.latest = factorisation::factorise(system, iterate, Kind::Increment, put_closing);
+            factorisation.latest = mode_factorisation::factorise(system, iterate, Kind::Increment, put_closing);
             factorisation.made += 1;
             work.factorisations += 1;
             factorisation.along = None;

@@ -2,9 +2,9 @@
 //! of second order in the error of the guess.
 
 use crate::algebra::SystemFactorisation;
-use crate::algebra::dense::assembly::Sink;
+use crate::algebra::dense::matrix_sink::Sink;
 use crate::mechanics::equations::closing_equation::ClosingEquation;
-use crate::mechanics::equations::{Kind, ModeSystem, factorisation, rate_recovery, residual};
+use crate::mechanics::equations::{Kind, ModeSystem, mode_factorisation, rate_recovery, residual};
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cost_counters::Work;
 use nalgebra::DVector;
@@ -27,7 +27,7 @@ pub(crate) fn iterated_once(
     let put_closing = |matrix: &mut dyn Sink| closing.write_gradient(system, &iterate.state, matrix);
     work.factorisations += 1;
     work.newton_iterations += 1;
-    let factorisation = factorisation::factorise(system, &iterate, Kind::Increment, put_closing)?;
+    let factorisation = mode_factorisation::factorise(system, &iterate, Kind::Increment, put_closing)?;
     if !factorisation.solve_once(&mut values) || !values.iter().all(|value| value.is_finite()) {
         return None;
     }

@@ -12,9 +12,9 @@
 
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, size};
+use crate::mechanics::equations::corrected_point::Corrected;
 use crate::mechanics::equations::slip_integration::{self, Rule};
-use crate::mechanics::equations::solution::Corrected;
-use crate::mechanics::equations::{Kind, ModeSystem, Role, Track, factorisation, matrix, rate_recovery};
+use crate::mechanics::equations::{Kind, ModeSystem, Role, Track, matrix, mode_factorisation, rate_recovery};
 use crate::mechanics::problem::state::{Rate, State};
 use nalgebra::DVector;
 
@@ -63,7 +63,7 @@ pub fn drift(
             }
         }
     }
-    let factorisation = factorisation::factorise_as_it_is(system, &iterate, Kind::Increment, |matrix| {
+    let factorisation = mode_factorisation::factorise_as_it_is(system, &iterate, Kind::Increment, |matrix| {
         matrix::border(system, matrix, end.rate)
     })?;
     if !factorisation.solve(&mut values) {

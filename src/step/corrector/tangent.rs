@@ -3,8 +3,8 @@
 use crate::algebra::SystemFactorisation;
 use crate::algebra::sparse::SparseFactorisation;
 use crate::algebra::sparse::preconditioned_refinement::Nearby;
-use crate::mechanics::equations::solution::{Corrected, Tangent};
-use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, factorisation, matrix, rate_recovery};
+use crate::mechanics::equations::corrected_point::{Corrected, Tangent};
+use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, matrix, mode_factorisation, rate_recovery};
 use crate::mechanics::problem::state::Rate;
 use crate::step::corrector::tolerances::{REUSABLE_PIVOT_RATIO, UNCERTAIN_PIVOT_RATIO};
 
@@ -29,7 +29,7 @@ pub fn tangent_and_error(
         return Some(Tangent { rate, error, determinant, stiffness_across });
     }
     *factorisations += 1;
-    let factorisation = factorisation::factorise_bordered(system, &iterate, towards)?;
+    let factorisation = mode_factorisation::factorise_bordered(system, &iterate, towards)?;
     let mut values = corrected.left_over.clone();
     values[system.size - 1] = 0.0;
     if !factorisation.solve(&mut values) {

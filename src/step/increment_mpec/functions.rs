@@ -3,7 +3,7 @@
 use crate::complementarity::mpec::{Problem, SparseRows};
 use crate::mechanics::contact::Frame;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
-use crate::mechanics::problem::contact_motion;
+use crate::mechanics::problem::contact_jacobian;
 use crate::mechanics::problem::equilibrium;
 use crate::mechanics::problem::state::State;
 use crate::step::increment_mpec::{InReach, IncrementProgram, tangent_components};
@@ -285,7 +285,7 @@ fn add_curvature_of_motion(
     let force =
         (0..entry.tangents).fold(of_normal, |sum, t| add(&sum, x[entry.tangential(t)] * program.step, &tangents[t]));
     let contact = &program.loading.contacts[entry.contact];
-    contact_motion::each_curvature(structure, contact, &state.displacement, &force, |row, column, value| {
+    contact_jacobian::each_curvature(structure, contact, &state.displacement, &force, |row, column, value| {
         let Some(row) = structure.unknown_of[row] else { return };
         match structure.unknown_of[column] {
             Some(column) => jacobian[(row, column)] -= value,

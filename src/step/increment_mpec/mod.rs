@@ -26,7 +26,7 @@
 
 pub(crate) mod certificate;
 pub(crate) mod functions;
-pub(crate) mod search;
+pub(crate) mod relaxation_sequence;
 pub(crate) mod solution_extraction;
 pub(crate) mod tangent_components;
 #[cfg(test)]
@@ -52,7 +52,7 @@ use crate::step::increment_mpec::tolerances::{
 };
 pub use certificate::Arrived;
 use nalgebra::DVector;
-pub use search::{ProgramEnd, Searched};
+pub use relaxation_sequence::{ProgramEnd, Searched};
 use smallvec::SmallVec;
 use tangent_components::Components;
 

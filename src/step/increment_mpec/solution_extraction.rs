@@ -1,6 +1,6 @@
 //! The results of an increment from the variables at its end: contact modes, the state, and the exact solution.
 
-use crate::complementarity::mpec::semismooth::{self, Polished};
+use crate::complementarity::mpec::semismooth_newton::{self, Polished};
 use crate::complementarity::mpec::{Activities, ConeActivity, PairActivity, Problem, ProgramSolution};
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::problem::state::State;
@@ -113,7 +113,7 @@ pub(super) fn polish(program: &IncrementProgram<'_>, x: &DVector<f64>, cancel: &
         }
         (size - 1.0, gradient)
     };
-    semismooth::polish(program, x, Some(&arc_length), cancel).ok()
+    semismooth_newton::polish(program, x, Some(&arc_length), cancel).ok()
 }
 
 /// The mode of a closed contact in 3D.

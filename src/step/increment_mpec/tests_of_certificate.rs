@@ -10,7 +10,7 @@ use crate::step::corrector::cost_counters::Work;
 use crate::step::increment_mpec::certificate;
 use crate::step::increment_mpec::solution_extraction;
 use crate::step::increment_mpec::*;
-use crate::step::segment::{Reached, StepStart as Beginning};
+use crate::step::mode_step::{Reached, StepStart as Beginning};
 use serde_json::{Map, json};
 
 /// The start of an increment.
@@ -239,7 +239,7 @@ fn circular_cones_and_corners_are_left_to_the_search() {
         let scene = Scene::new(&crate::model::decode::decode(built_in.request.as_bytes()).unwrap()).unwrap();
         each_increment(&scene, |loading, begun, increment| {
             let Some(reached) = begun.reach(loading, increment.step) else { return };
-            let closed = |corner: &crate::mechanics::problem::node_forces::Corner| {
+            let closed = |corner: &crate::mechanics::problem::node_contact_forces::Corner| {
                 corner.closed(loading, &reached.corrected.state).len()
             };
             if scene.structure.dimension == 3 || scene.corners.iter().any(|corner| closed(corner) >= 2) {

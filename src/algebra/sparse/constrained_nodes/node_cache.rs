@@ -1,7 +1,7 @@
 //! The constrained nodes of the most recently factorised matrices of one pattern. The pattern stores them, so this
 //! module does not depend on matrices.
 
-use crate::algebra::sparse::constrained_nodes::held_node::{Coupling, HeldNode};
+use crate::algebra::sparse::constrained_nodes::constrained_node::{Coupling, HeldNode};
 use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Friction, Holdings};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};

@@ -1,7 +1,7 @@
 //! A matrix `[[K, B], [C, D]]` with `K` sparse and nearly symmetric, and few border rows and columns.
 
 use crate::algebra::Inertia;
-use crate::algebra::dense::assembly::Sink;
+use crate::algebra::dense::matrix_sink::Sink;
 use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;
 use crate::algebra::sparse::factors::pattern::Pattern;

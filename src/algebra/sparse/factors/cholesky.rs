@@ -1,8 +1,8 @@
 //! Cholesky factorisation of sparse symmetric positive definite matrices.
 
 use crate::algebra::dense::solve_counters::count_solves;
+use crate::algebra::sparse::factors::elimination_order::Symbolic;
 use crate::algebra::sparse::factors::supernodal_ldl;
-use crate::algebra::sparse::factors::symbolic::Symbolic;
 use crate::algebra::sparse::factors::tolerances::BLOCKED_CHOLESKY_WORK;
 use crate::resources::budget::{self, Taken};
 use faer::dyn_stack::{MemBuffer, MemStack};

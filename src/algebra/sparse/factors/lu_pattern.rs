@@ -1,6 +1,7 @@
-//! The patterns of the unsymmetric factors of a matrix with a symmetric pattern.
+//! The positions of the entries of the factors `L` and `U`, fill-in included, of a matrix whose own pattern
+//! (`pattern`) is symmetric.
 
-use crate::algebra::sparse::factors::symbolic::Symbolic;
+use crate::algebra::sparse::factors::elimination_order::Symbolic;
 use crate::resources::budget::{self, Taken};
 
 /// Columns between two budget checks.

@@ -3,7 +3,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `pattern` | the sparsity pattern of a matrix, found once |
-//! | `symbolic` | the elimination order that keeps the factors sparse (AMD), and the size and work of a factor |
+//! | `elimination_order` | the elimination order that keeps the factors sparse (AMD), and the size and work of a factor |
 //! | `bordered_matrix` | the assembled matrix |
 //! | `ldl`, `supernodal_ldl` | `K = L D Lᵀ`: small pivots raised, increments removed by borders; in pieces if large |
 //! | `cholesky` | whether a symmetric matrix is positive definite |
@@ -13,6 +13,7 @@
 
 pub mod bordered_matrix;
 pub mod cholesky;
+pub(crate) mod elimination_order;
 pub(crate) mod entries;
 pub mod ldl;
 pub(crate) mod lu_pattern;
@@ -20,5 +21,4 @@ pub mod pattern;
 pub mod pivoted_lu;
 pub(crate) mod static_pivot_lu;
 pub(crate) mod supernodal_ldl;
-pub(crate) mod symbolic;
 pub(crate) mod tolerances;

@@ -1,8 +1,8 @@
 //! The sparsity pattern of a symmetric matrix and its elimination order.
 
 use crate::algebra::sparse::constrained_nodes::node_cache::LastNodes;
+use crate::algebra::sparse::factors::elimination_order::Symbolic;
 use crate::algebra::sparse::factors::lu_pattern::LuPattern;
-use crate::algebra::sparse::factors::symbolic::Symbolic;
 use crate::algebra::sparse::factors::tolerances::BLOCKED_LDL_WORK;
 use crate::resources::budget::{self, Taken};
 use faer::sparse::SymbolicSparseColMatRef;

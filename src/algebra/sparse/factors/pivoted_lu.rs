@@ -1,7 +1,7 @@
 //! Sparse LU factorisation of any square matrix given by its entries.
 
 use crate::algebra::dense::solve_counters::count_solves;
-use crate::algebra::sparse::factors::symbolic::allow_factor;
+use crate::algebra::sparse::factors::elimination_order::allow_factor;
 use crate::resources::budget;
 use faer::MatMut;
 use faer::linalg::solvers::SolveCore;

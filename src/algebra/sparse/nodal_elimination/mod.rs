@@ -12,11 +12,13 @@
 //! border, with the equations `H` as its rows, and the matrix remains symmetric; or `F R⁻¹` times the equations `H` is
 //! subtracted from the equations `T`, which makes the matrix unsymmetric, and back substitution gives `r` as well.
 
-pub(crate) mod constrained_node_basis;
-pub(crate) mod nodes;
+pub(crate) mod constrained_node_construction;
+pub(crate) mod constrained_node_set;
 pub(crate) mod tolerances;
 
-pub(super) use crate::algebra::sparse::constrained_nodes::held_node::{Coupling, HeldNode, Matrices, gathered, times};
+pub(super) use crate::algebra::sparse::constrained_nodes::constrained_node::{
+    Coupling, HeldNode, Matrices, gathered, times,
+};
 pub(super) use crate::algebra::sparse::constrained_nodes::nodal_constraints::Friction;
 pub use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Holding, Holdings, IndexList};
 
@@ -43,23 +45,23 @@ impl Elimination {
         let all = Nodes::of(matrix, holdings, friction);
         let (nodes, numbers) = (&all.nodes, &all.numbers);
         let mut values = matrix.values.clone();
-        nodes.iter().for_each(|node| constrained_node_basis::rotate_matrix(node, matrix, numbers, &mut values));
+        nodes.iter().for_each(|node| constrained_node_construction::rotate_matrix(node, matrix, numbers, &mut values));
         let held = nodes.last().map_or(0, |node| node.before as usize + node.held_count());
         let most = nodes.iter().flat_map(HeldNode::held).map(|unknown| matrix.pattern.column(unknown).len());
         let mut entries = Vec::with_capacity(2 * most.sum::<usize>());
         let [mut rows_at, mut columns_at] = [(); 2].map(|()| Vec::with_capacity(held + 1));
         // All rows and columns are extracted before any is cleared: neighbouring nodes have entries in each other's
         // rows and columns.
-        nodes
-            .iter()
-            .for_each(|node| constrained_node_basis::take(node, matrix, &values, true, &mut entries, &mut rows_at));
+        nodes.iter().for_each(|node| {
+            constrained_node_construction::take(node, matrix, &values, true, &mut entries, &mut rows_at)
+        });
         rows_at.push(entries.len() as u32);
-        nodes.iter().for_each(|node| constrained_node_basis::fold(node, matrix, numbers, &mut values));
-        nodes
-            .iter()
-            .for_each(|node| constrained_node_basis::take(node, matrix, &values, false, &mut entries, &mut columns_at));
+        nodes.iter().for_each(|node| constrained_node_construction::fold(node, matrix, numbers, &mut values));
+        nodes.iter().for_each(|node| {
+            constrained_node_construction::take(node, matrix, &values, false, &mut entries, &mut columns_at)
+        });
         columns_at.push(entries.len() as u32);
-        nodes.iter().for_each(|node| constrained_node_basis::clear(node, matrix, &mut values));
+        nodes.iter().for_each(|node| constrained_node_construction::clear(node, matrix, &mut values));
         (Self { nodes: all, columns_at, rows_at, entries }, values)
     }
 

@@ -22,19 +22,19 @@
 //! determines the contact mode. Every direction in the list has been confirmed by a small step.
 //!
 //! Other modes of the contacts that can change have their own branches where their equations are singular at this
-//! point, too: see `in_other_modes`. Where no direction of first order continues the path, `second_order_by_mode`
+//! point, too: see `in_other_modes`. Where no direction of first order continues the path, `second_order_by_contact_mode`
 //! examines the directions at second order.
 
-pub(crate) mod fold;
 pub(crate) mod lyapunov_schmidt;
-pub(crate) mod null_derivatives;
-pub(crate) mod other_modes;
-pub(crate) mod second_order_by_mode;
+pub(crate) mod null_plane_at_fold;
+pub(crate) mod other_contact_modes;
+pub(crate) mod second_derivatives;
+pub(crate) mod second_order_by_contact_mode;
 #[cfg(test)]
 mod tests;
 pub(crate) mod tolerances;
 
-pub use second_order_by_mode::{SecondOrderFindings, in_each_mode};
+pub use second_order_by_contact_mode::{SecondOrderFindings, in_each_mode};
 
 use crate::algebra::{nearest_null_space, null_space_as_scaled};
 use crate::branching::bifurcation::branch_directions::tolerances::{
@@ -43,23 +43,23 @@ use crate::branching::bifurcation::branch_directions::tolerances::{
 use crate::branching::bifurcation::singularity::null_vectors::NullVectors;
 use crate::branching::bifurcation::singularity::tolerances::SINGULAR_PIVOT;
 use crate::branching::directions::candidate::{Alternative, CandidateDirection};
-use crate::branching::directions::choice::{DirectionChoice, potential_rate, sign_of};
+use crate::branching::directions::feasible_direction::{DirectionChoice, potential_rate, sign_of};
 use crate::branching::directions::trial_step::confirm_by;
 use crate::mechanics::contact::vector::{add, dot};
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::equations::closing_equation::ArcLengthEquation;
 use crate::mechanics::equations::scaled_rows::scaled_rows;
 use crate::mechanics::equations::{ModeSystem, rate_recovery};
-use crate::mechanics::multi_contact::contact_status::Standing;
+use crate::mechanics::multi_contact::changeable_contacts::Standing;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cached_factorisation::CachedFactorisation;
 use crate::step::corrector::newton;
 use lyapunov_schmidt::LyapunovSchmidtEquations;
 use nalgebra::{DMatrix, DVector};
-use null_derivatives::{Derivative, Null};
+use second_derivatives::{Derivative, Null};
 
-pub use other_modes::{are_singular_in_all_modes, in_other_modes};
+pub use other_contact_modes::{are_singular_in_all_modes, in_other_modes};
 
 /// Branches at a point.
 pub struct Branches {

@@ -23,14 +23,14 @@ use crate::branching::bifurcation::locate::{Crossing, Located};
 use crate::branching::bifurcation::singularity::bordering::{Bordering, orthonormal};
 use crate::branching::bifurcation::singularity::null_vectors::NullVectors;
 use crate::branching::bifurcation::singularity::test_functions::{Signature, SignatureChange};
-use crate::mechanics::equations::{Kind, ModeSystem, factorisation, matrix, rate_recovery, residual};
+use crate::mechanics::equations::{Kind, ModeSystem, matrix, mode_factorisation, rate_recovery, residual};
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::budget;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
 use crate::step::corrector::tolerances::ACCEPTED_RESIDUAL;
 use crate::step::interpolation::{PlacedPoint, between, placed, unit};
-use crate::step::segment::{Reached, StepStart};
+use crate::step::mode_step::{Reached, StepStart};
 use nalgebra::{Complex, DMatrix, DVector};
 use std::sync::Arc;
 
@@ -129,7 +129,7 @@ impl BorderedNewton<'_, '_> {
         let (system, width) = (self.system, self.right.place - self.left.place);
         let iterate = system.iterate(state.clone());
         let Some(SystemFactorisation::Sparse(factors)) =
-            factorisation::factorise_bordered(system, &iterate, &unit(&rate))
+            mode_factorisation::factorise_bordered(system, &iterate, &unit(&rate))
         else {
             return None;
         };
@@ -318,7 +318,7 @@ impl BorderedNewton<'_, '_> {
     fn is_first_by_sign(&self, located: &Located, before: Signature) -> bool {
         let Reached { corrected, rate, .. } = &*located.point;
         let state = corrected.state.advanced(rate, -COUNTING_OFFSET * self.right.place);
-        let factors = factorisation::factorise_bordered(self.system, &self.system.iterate(state), rate);
+        let factors = mode_factorisation::factorise_bordered(self.system, &self.system.iterate(state), rate);
         factors.is_some_and(|factors| factors.determinant_sign() == before.determinant)
     }
 

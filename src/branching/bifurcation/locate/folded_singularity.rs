@@ -20,8 +20,8 @@ use crate::branching::bifurcation::locate::tolerances::{
 use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, matrix, rate_recovery, residual};
 use crate::step::corrector::newton;
 use crate::step::corrector::tolerances::ACCEPTED_RESIDUAL;
-use crate::step::event_functions::{self, Watch};
-use crate::step::segment::{Reached, StepStart};
+use crate::step::event_functions::{self, EventFunction};
+use crate::step::mode_step::{Reached, StepStart};
 use nalgebra::{DMatrix, DVector};
 
 /// Newton iterations.
@@ -47,9 +47,9 @@ pub fn locate(start: &StepStart<'_>, reached: &Reached) -> Option<Box<Reached>> 
     let mut rate = start.state.chord(&corrected.state);
     rate.scale(1.0 / step);
     // The node has reached the point in continued slip, without another event.
-    let holds = |watch: &Watch| {
-        let value = watch.value(start.loading, start.modes, &corrected.state, &rate);
-        value >= -ACCEPTED_VIOLATION * watch.scale(start.loading, &corrected.state, start.force_scale)
+    let holds = |event_function: &EventFunction| {
+        let value = event_function.value(start.loading, start.modes, &corrected.state, &rate);
+        value >= -ACCEPTED_VIOLATION * event_function.scale(start.loading, &corrected.state, start.force_scale)
     };
     if !event_functions::of_mode(start.loading, start.modes, start.state, start.rate).iter().all(holds) {
         return None;

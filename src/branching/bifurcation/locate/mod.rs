@@ -5,7 +5,10 @@
 //! between the ends of the step, then between points a fiftieth of the step away, and closer. The interpolation error
 //! decreases with the fourth power of their distance; the point is accepted by its residual as every other point is.
 //!
-//! This is the method for dense matrices. For many unknowns the equations are bordered, so that they are regular at the
+//! `folded_singularity` locates a singular point of another kind, of the slip equations, at which a path may pass from
+//! one sheet of slips to another (a canard-type point).
+//!
+//! The interpolation is the method for dense matrices. For many unknowns the equations are bordered, so that they are regular at the
 //! point (`bordered_newton`); where this finds no point, as where a crossing is not transversal, the dense method is
 //! used.
 
@@ -28,7 +31,7 @@ use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
 use crate::step::corrector::tolerances::ACCEPTED_RESIDUAL;
 use crate::step::interpolation::{PlacedPoint, between, placed, unit};
-use crate::step::segment::{Reached, StepStart};
+use crate::step::mode_step::{Reached, StepStart};
 use std::sync::Arc;
 
 /// A smooth bifurcation point at the end of a step.

@@ -12,13 +12,13 @@
 //! Anal. 4 (1984) 493, doi:10.1093/imanum/4.4.493; W. Govaerts, *Numerical Methods for Bifurcations of Dynamical
 //! Equilibria*, SIAM 2000, chapter 3). Two sparse factorisations suffice: one of the matrix, one of its transpose.
 
-use crate::algebra::dense::assembly::Sink;
+use crate::algebra::dense::matrix_sink::Sink;
 use crate::algebra::sparse::{Bordered, SparseFactorisation};
 use crate::branching::bifurcation::singularity::null_vectors::NullVectors;
 use crate::branching::bifurcation::singularity::tolerances::{
     EXTRAPOLATED_DIFFERENCE_STEP, SYMMETRY_RESIDUAL, SYMMETRY_TEST_FACTOR,
 };
-use crate::mechanics::equations::{Kind, ModeSystem, factorisation, matrix, rate_recovery};
+use crate::mechanics::equations::{Kind, ModeSystem, matrix, mode_factorisation, rate_recovery};
 use crate::mechanics::problem::state::{Rate, State};
 use nalgebra::{DMatrix, DVector};
 
@@ -49,7 +49,7 @@ impl<'a> Bordering<'a> {
             column.iter().enumerate().for_each(|(row, value)| matrix.add(row, size + index, stiffness * value));
         }
         let transposed = matrix.transposed();
-        let factors = SparseFactorisation::new(matrix, factorisation::holdings(system))?;
+        let factors = SparseFactorisation::new(matrix, mode_factorisation::holdings(system))?;
         let unit = |place: usize| {
             let mut values = DVector::zeros(size + corank);
             values[place] = 1.0;
@@ -70,7 +70,8 @@ impl<'a> Bordering<'a> {
         let left = match left {
             Some(left) => left,
             None => {
-                let transposed = SparseFactorisation::new(transposed, &factorisation::holdings(system).transposed())?;
+                let transposed =
+                    SparseFactorisation::new(transposed, &mode_factorisation::holdings(system).transposed())?;
                 let solved = (0..corank).map(|index| {
                     let mut values = unit(size + index);
                     transposed.solve(&mut values).then(|| values.rows(0, size - 1).into_owned())

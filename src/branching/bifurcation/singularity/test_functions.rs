@@ -26,15 +26,15 @@ use crate::branching::bifurcation::singularity::tolerances::ZERO_PIVOT;
 use crate::mechanics::contact::{ContactPair, Mode};
 use crate::mechanics::equations::scaled_rows::scaled_rows;
 use crate::mechanics::equations::tolerances::RANK_TOLERANCE;
-use crate::mechanics::equations::{Kind, ModeSystem, factorisation, matrix};
+use crate::mechanics::equations::{Kind, ModeSystem, matrix, mode_factorisation};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::mechanics::problem::tolerances::CONTACT_TOLERANCE;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::tangent;
 use crate::step::corrector::tolerances::UNCERTAIN_PIVOT_RATIO;
-use crate::step::event_functions::Watch;
-use crate::step::segment::{Reached, StepStart};
+use crate::step::event_functions::EventFunction;
+use crate::step::mode_step::{Reached, StepStart};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
@@ -151,7 +151,7 @@ pub fn negative_eigenvalues(
 
 fn inertia_of_sparse(system: &ModeSystem<'_>, matrix: &Bordered, work: &mut Work) -> Option<Inertia> {
     work.factorisations += 1;
-    held_inertia(matrix, factorisation::holdings(system), ZERO_PIVOT)
+    held_inertia(matrix, mode_factorisation::holdings(system), ZERO_PIVOT)
 }
 
 fn reduced_tangent(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State) -> Option<DMatrix<f64>> {
@@ -266,7 +266,7 @@ impl Signature {
         work.factorisations += 1;
         if loading.structure.layout().is_some() {
             let iterate = system.iterate(state.clone());
-            let bordered = factorisation::factorise_bordered(&system, &iterate, rate)?;
+            let bordered = mode_factorisation::factorise_bordered(&system, &iterate, rate)?;
             if bordered.pivot_ratio() <= UNCERTAIN_PIVOT_RATIO {
                 return None;
             }
@@ -341,7 +341,7 @@ pub fn compare(
         };
         return (Some(after), change);
     }
-    if let Some(Watch::LoadRate { sign }) = reached.event {
+    if let Some(EventFunction::LoadRate { sign }) = reached.event {
         // K u̇ = ṡ f: the eigenvalue that vanishes at the limit point changes sign with the load, times the sign of
         // f·u̇.
         let system = ModeSystem::new(start.loading, start.modes, start.state);

@@ -1,7 +1,7 @@
 //! The directions at a point within a mode whose contacts on the cone all slip, where a cheap test proves that there
 //! are exactly two.
 //!
-//! With every contact on the cone kept closed let `b` be the slip velocities and `x` the other free motions.
+//! Keep every contact on the cone closed, and let `b` be the slip velocities and `x` the other free motions.
 //! Equilibrium along `x`, and along the slips with `μ` times the normal added, so that the friction forces drop out, is
 //!
 //! ```text
@@ -16,25 +16,25 @@
 //! `sparse_uniqueness::proof`); or the slips are few, and their condensed matrix is formed (see
 //! `rates::parametric_lcp`), which is not needed for a single slip.
 //!
-//! [`many`] treats sparse matrices, [`static_condensation`] condenses dense ones.
+//! [`stuck_direction_sparse`] treats sparse matrices, [`static_condensation`] condenses dense ones.
 //!
 //! `None` is returned where any condition fails or holds by less than a wide margin: `directions` then searches all
 //! modes.
 
-pub(crate) mod many;
 pub(crate) mod static_condensation;
+pub(crate) mod stuck_direction_sparse;
 #[cfg(test)]
 mod tests;
 pub(crate) mod tolerances;
 
 use crate::branching::directions::candidate::is_mechanism;
-use crate::branching::directions::choice::{DirectionChoice, Rules, mark_retrace, potential_rate, sign_of};
+use crate::branching::directions::feasible_direction::{DirectionChoice, Rules, mark_retrace, potential_rate, sign_of};
 use crate::branching::uniqueness::all_slipping::tolerances::{SMALLEST_LOAD_RATE, STRICT_MARGIN};
 use crate::complementarity::rates::p_matrix::is_definite;
 use crate::complementarity::rates::parametric_lcp::slip_or_stick;
 use crate::mechanics::contact::vector::{Vector, dot};
 use crate::mechanics::contact::{Mode, Reaction};
-use crate::mechanics::multi_contact::contact_status::Standing;
+use crate::mechanics::multi_contact::changeable_contacts::Standing;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cached_factorisation::CachedFactorisation;
@@ -286,7 +286,7 @@ impl<'a> ReducedUnknowns<'a> {
     /// directions.
     fn stuck(&self, incoming: &Rate) -> Option<Rate> {
         if self.unknowns.len() > MOST_DENSE {
-            return many::stuck_among_many(self, incoming);
+            return stuck_direction_sparse::stuck_among_many(self, incoming);
         }
         let others = self.unknowns_where(false);
         let is_sole = self.slips.len() == 1;

@@ -1,6 +1,6 @@
 use crate::branching::directions::arrival_tangent::Incoming;
-use crate::branching::directions::choice::PriorMotion;
-use crate::branching::selection::decision;
+use crate::branching::directions::feasible_direction::PriorMotion;
+use crate::branching::selection::selection_rule;
 use crate::branching::uniqueness::all_slipping::*;
 use crate::check::scenes;
 use crate::continuation::path::iterator::Path;
@@ -29,7 +29,7 @@ fn what_is_found_at_once_is_what_is_found_everywhere() {
                     continue;
                 };
                 let before = PriorMotion::Incoming(Incoming::along(incoming));
-                let (everywhere, rest) = decision::list(loading, &here.state, &standings, before, rules);
+                let (everywhere, rest) = selection_rule::list(loading, &here.state, &standings, before, rules);
                 let place = format!("{} {}", built_in.name, increment.index);
                 assert_eq!((rest.unexplored, rest.degenerate), (0, false), "{place}");
                 assert_eq!(at_once.len(), everywhere.len(), "{place}");

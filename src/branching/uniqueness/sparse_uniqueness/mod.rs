@@ -15,9 +15,9 @@
 //! Where the contacts are too many for the condensed matrix and there is no such proof, the directions found by
 //! pivoting are listed, and the modes not examined are counted.
 
-pub(crate) mod equations;
 pub(crate) mod pivoting;
 pub(crate) mod proof;
+pub(crate) mod sparse_rate_equations;
 #[cfg(test)]
 mod tests;
 pub(crate) mod tolerances;
@@ -25,11 +25,11 @@ pub(crate) mod tolerances;
 use crate::branching::directions::arrival_tangent::Incoming;
 use crate::branching::directions::candidate::FoundDirections;
 use crate::complementarity::rate_search::branch_and_bound::Effort;
-use crate::mechanics::multi_contact::contact_status::Standing;
+use crate::mechanics::multi_contact::changeable_contacts::Standing;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
-use equations::Equations;
 use proof::DistinguishingQuantity;
+use sparse_rate_equations::Equations;
 
 /// Numbers of contacts that can change up to which a search of all combinations is as fast: of all of them, and of
 /// those that touch, each of which has four modes.

@@ -1,18 +1,18 @@
 //! The direction for one sign of the load rate, or of the load's power, by block pivoting over the modes of the contacts.
 
 use crate::algebra::SystemFactorisation;
-use crate::algebra::dense::assembly::Sink;
+use crate::algebra::dense::matrix_sink::Sink;
 use crate::branching::directions::arrival_tangent::Incoming;
 use crate::branching::directions::candidate::{Alternative, CandidateDirection};
 use crate::branching::directions::tolerances::WEAK_MARGIN;
-use crate::branching::uniqueness::sparse_uniqueness::equations::{ChangingContact, Equations};
 use crate::branching::uniqueness::sparse_uniqueness::proof::DistinguishingQuantity;
+use crate::branching::uniqueness::sparse_uniqueness::sparse_rate_equations::{ChangingContact, Equations};
 use crate::complementarity::rates::block_pivoting::{self, RoundResult, Rounds};
 use crate::complementarity::rates::tolerances::DOUBTFUL_RATE;
 use crate::mechanics::contact::vector::{Vector, dot, scaled};
 use crate::mechanics::contact::{Mode, Reaction, all_continue};
-use crate::mechanics::equations::{Kind, ModeSystem, factorisation, rate_recovery};
-use crate::mechanics::problem::node_forces::whole_rates;
+use crate::mechanics::equations::{Kind, ModeSystem, mode_factorisation, rate_recovery};
+use crate::mechanics::problem::node_contact_forces::whole_rates;
 use crate::mechanics::problem::state::Rate;
 use crate::step::corrector::cached_factorisation::CachedFactorisation;
 
@@ -171,8 +171,8 @@ fn line(
     let iterate = system.iterate(equations.state.clone());
     let by_load = |matrix: &mut dyn Sink| matrix.add(system.size() - 1, equations.loading.structure.unknowns(), 1.0);
     let factorisation = match border {
-        Some(border) => factorisation::factorise_bordered(&system, &iterate, border)?,
-        None => factorisation::factorise(&system, &iterate, Kind::Rates, by_load)?,
+        Some(border) => mode_factorisation::factorise_bordered(&system, &iterate, border)?,
+        None => mode_factorisation::factorise(&system, &iterate, Kind::Rates, by_load)?,
     };
     let rate = rate_recovery::tangent_by(&system, &factorisation, &iterate)?;
     Some((rate, Some(factorisation)))

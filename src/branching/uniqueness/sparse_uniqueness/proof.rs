@@ -31,8 +31,8 @@
 use crate::algebra::sparse::factors::cholesky::{Definite, Triangle};
 use crate::branching::directions::candidate::{CandidateDirection, FoundDirections, is_mechanism};
 use crate::branching::directions::tolerances::WEAK_MARGIN;
-use crate::branching::uniqueness::sparse_uniqueness::equations::{ChangingContact, Equations};
 use crate::branching::uniqueness::sparse_uniqueness::pivoting;
+use crate::branching::uniqueness::sparse_uniqueness::sparse_rate_equations::{ChangingContact, Equations};
 use crate::branching::uniqueness::sparse_uniqueness::tolerances::{
     DEFINITENESS_MARGIN, DETERMINANT_TOLERANCE, LARGEST_WEIGHT,
 };

@@ -9,7 +9,7 @@ use crate::continuation::path::iterator::Path;
 use crate::continuation::scene::Scene;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::equations::ModeSystem;
-use crate::mechanics::multi_contact::contact_status::Standing;
+use crate::mechanics::multi_contact::changeable_contacts::Standing;
 use crate::mechanics::problem::state::Rate;
 use crate::resources::cancel::CancelFlag;
 use serde_json::{Map, json};

@@ -8,11 +8,11 @@
 //! | `cone` | the second-order cone and complementarity on it |
 //! | `activity` | which member of each pair is zero |
 //! | `sparse_rows` | a matrix stored by the entries of its rows |
-//! | `counts` | counts of work, and the iterates of a solve |
+//! | `solve_statistics` | counts of work, and the iterates of a solve |
 
 pub(crate) mod activity;
 pub mod cone;
-pub(crate) mod counts;
 pub(crate) mod evaluation;
 pub mod problem;
+pub(crate) mod solve_statistics;
 pub(crate) mod sparse_rows;

@@ -16,7 +16,7 @@
 use crate::complementarity::mpec::quadratic_program::tolerances::{INITIAL_ACTIVITY_MARGIN, WEIGHT_FACTOR};
 use nalgebra::DVector;
 
-use crate::complementarity::mpec::program::counts::{SolverCounts, SolverIterate};
+use crate::complementarity::mpec::program::solve_statistics::{SolverCounts, SolverIterate};
 use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 use crate::complementarity::mpec::quadratic_program::active_set::{self, WorkingSet};
 use crate::complementarity::mpec::quadratic_program::interior_point::{

@@ -4,7 +4,7 @@
 //! | file | what it does |
 //! |---|---|
 //! | `pair_treatment` | the treatment of each pair |
-//! | `relaxation` | the rows of the relaxed program and their linearisation |
+//! | `smooth_rows` | the rows of the relaxed program and their linearisation |
 //! | `cone_rows` | the rows of cone pairs |
 //! | `damped_bfgs` | a positive definite approximation of the Hessian |
 //! | `sqp` | sequential quadratic programming |
@@ -12,6 +12,6 @@
 pub(crate) mod cone_rows;
 pub(crate) mod damped_bfgs;
 pub(crate) mod pair_treatment;
-pub(crate) mod relaxation;
+pub(crate) mod smooth_rows;
 pub(crate) mod sqp;
 pub(crate) mod tolerances;

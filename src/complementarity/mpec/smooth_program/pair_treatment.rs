@@ -33,7 +33,7 @@ pub struct TreatmentPattern {
 }
 
 impl TreatmentPattern {
-    /// All products at most `relaxation`.
+    /// All products at most `smooth_rows`.
     pub fn relaxed(pairs: usize, cones: usize, relaxation: f64) -> Self {
         Self {
             pairs: vec![PairTreatment::Product(relaxation); pairs],

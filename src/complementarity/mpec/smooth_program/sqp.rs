@@ -22,14 +22,14 @@ use crate::complementarity::mpec::smooth_program::tolerances::{
 };
 use nalgebra::DVector;
 
-use crate::complementarity::mpec::program::counts::SolverIterate;
 use crate::complementarity::mpec::program::evaluation::{ProgramEvaluation, Quantity};
 use crate::complementarity::mpec::program::problem::Problem;
+use crate::complementarity::mpec::program::solve_statistics::SolverIterate;
 use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 use crate::complementarity::mpec::quadratic_program::driver::{QuadraticStep, StepSolver};
 use crate::complementarity::mpec::quadratic_program::interior_point::{QuadraticFailure, QuadraticProgram};
 use crate::complementarity::mpec::smooth_program::damped_bfgs::Secant;
-use crate::complementarity::mpec::smooth_program::relaxation::{Multipliers, SmoothProgramRows};
+use crate::complementarity::mpec::smooth_program::smooth_rows::{Multipliers, SmoothProgramRows};
 use crate::resources::cancel::CancelFlag;
 
 /// Largest number of halvings of a step.

@@ -19,7 +19,7 @@
 //! stiffest result is used: a load scale that is too large costs next to nothing, as the arc length is then that of the
 //! displacements.
 
-pub(crate) mod equations;
+pub(crate) mod load_response;
 pub(crate) mod tolerances;
 
 use crate::continuation::scene::characteristic_stiffness::tolerances::{
@@ -27,7 +27,7 @@ use crate::continuation::scene::characteristic_stiffness::tolerances::{
 };
 use crate::mechanics::contact::ContactPair;
 use crate::mechanics::contact::vector::{Vector, add, dot};
-use crate::mechanics::problem::contact_motion;
+use crate::mechanics::problem::contact_jacobian;
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::structure::assembly::{ElementAt, ForceBuffer, StiffnessBuffer};
 use crate::mechanics::structure::elements::Stretching;
@@ -152,7 +152,7 @@ impl StiffnessEstimate<'_> {
 
     /// Displacement of a contact's node relative to its obstacle.
     fn relative(&self, contact: usize, motion: &Motion) -> Vector {
-        let moved = contact_motion::moved(self.structure, &self.contacts[contact], &motion.displacement);
+        let moved = contact_jacobian::moved(self.structure, &self.contacts[contact], &motion.displacement);
         add(&moved, -motion.load, &self.pattern.shifts[contact])
     }
 
@@ -169,7 +169,7 @@ impl StiffnessEstimate<'_> {
             let stiffness = of_nodes.fold(0.0, f64::max);
             let tie = |vector: &Vector, stiffness: f64| {
                 let mut along = Vec::new();
-                contact_motion::each_column(self.structure, contact, still, |freedom, column| {
+                contact_jacobian::each_column(self.structure, contact, still, |freedom, column| {
                     along.push((freedom, dot(vector, column)));
                 });
                 let by_load = -dot(vector, &self.pattern.shifts[index]);
@@ -189,7 +189,7 @@ impl StiffnessEstimate<'_> {
     /// The motion `K u = s p`, `p·u = 1`; `None` where the load moves nothing, or where the motion is not determined.
     fn at_first_order(&self, still: &[f64]) -> Option<Motion> {
         let ties = self.all_ties(still);
-        let pushed = equations::pushed(self, still, &ties);
+        let pushed = load_response::pushed(self, still, &ties);
         let size = pushed.iter().map(|value| value * value).sum::<f64>().sqrt();
         if size <= 0.0 || !size.is_finite() {
             return None;
@@ -197,7 +197,7 @@ impl StiffnessEstimate<'_> {
         let row: Vec<f64> = pushed.iter().map(|value| value / size).collect();
         let mut values = DVector::zeros(row.len() + 1);
         values[row.len()] = 1.0;
-        if !equations::factorise(self, still, &ties, &row)?.solve(&mut values) {
+        if !load_response::factorise(self, still, &ties, &row)?.solve(&mut values) {
             return None;
         }
         let mut motion = self.motion(values.as_slice());
@@ -258,12 +258,12 @@ impl StiffnessEstimate<'_> {
             }
             for tie in &ties {
                 let pull = tie.stretching.stiffness * tie.stretch(&motion);
-                equations::unknowns_of(self, &tie.stretching)
+                load_response::unknowns_of(self, &tie.stretching)
                     .iter()
                     .for_each(|(row, value)| left_over[*row] += pull * value);
             }
             left_over[unknowns] = row.iter().zip(&values).map(|(entry, value)| entry * value).sum::<f64>() - size;
-            if !equations::factorise(self, &motion.displacement, &ties, row)?.solve(&mut left_over) {
+            if !load_response::factorise(self, &motion.displacement, &ties, row)?.solve(&mut left_over) {
                 return None;
             }
             values.iter_mut().zip(left_over.iter()).for_each(|(value, change)| *value -= change);

@@ -6,7 +6,7 @@ use crate::complementarity::rates::rate_problem::{Choice, Entity, Signed, Touchi
 use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size, unit};
 use crate::mechanics::contact::{Frame, Mode, Reaction, Sliding};
-use crate::mechanics::multi_contact::contact_status::Standing;
+use crate::mechanics::multi_contact::changeable_contacts::Standing;
 use crate::mechanics::multi_contact::moving_planes::Carried;
 use crate::mechanics::multi_contact::planar::{self, rays};
 use crate::mechanics::multi_contact::rate_options;
@@ -14,7 +14,7 @@ use crate::mechanics::multi_contact::rate_options::tolerances::{BOUND_SINE, GRAZ
 use crate::mechanics::multi_contact::spatial::ContactGroup;
 use crate::mechanics::multi_contact::spatial::sliding;
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::node_forces;
+use crate::mechanics::problem::node_contact_forces;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::budget::{self, Taken};
 use nalgebra::DVector;
@@ -50,7 +50,7 @@ impl Changeable {
         let corner = loading.corners.iter().find(|corner| corner.contacts.contains(&contacts[0]));
         let is_cornered = matches!(standing, Standing::Cornered { .. });
         let group = corner
-            .filter(|corner| is_cornered && !node_forces::is_in_plane(loading, corner))
+            .filter(|corner| is_cornered && !node_contact_forces::is_in_plane(loading, corner))
             .map(|_| ContactGroup::new(loading, &contacts, state));
         let directions: Vec<Vector> = match standing {
             Standing::Settled(_) => Vec::new(),
@@ -67,7 +67,7 @@ impl Changeable {
         let velocities = directions.into_iter().enumerate().map(|(k, direction)| (next + k, direction)).collect();
         let force = match &group {
             Some(group) => group.force(loading, state),
-            None => node_forces::total_force(loading, contacts.iter().copied(), state),
+            None => node_contact_forces::total_force(loading, contacts.iter().copied(), state),
         };
         let reaction = state.reactions[contacts[0]];
         Self { contacts, standing, frames, velocities, reaction, force, group }
@@ -116,14 +116,14 @@ impl Changeable {
     /// contact.
     pub fn move_to_slider(&self, loading: Loading<'_>, modes: &[Mode], rate: &mut Rate, state: &State) {
         if let Some(carried) = self.carried(loading, state) {
-            let whole = node_forces::force(&self.frames[0], &rate.reactions[self.contacts[0]]);
+            let whole = node_contact_forces::force(&self.frames[0], &rate.reactions[self.contacts[0]]);
             for (contact, part) in carried.rates(loading, modes, &whole, state) {
                 rate.reactions[contact] = part;
             }
             return;
         }
         if let Some(group) = &self.group {
-            let whole = node_forces::force(&self.frames[0], &rate.reactions[self.contacts[0]]);
+            let whole = node_contact_forces::force(&self.frames[0], &rate.reactions[self.contacts[0]]);
             let motion = loading.relative_rate(self.contacts[0], state, rate);
             let parts = sliding::rates_in(group, modes, &self.force, &whole, &motion);
             if !parts.is_empty() {
@@ -135,7 +135,7 @@ impl Changeable {
         let slips = |(contact, _): &(&usize, &Frame)| matches!(modes[**contact], Mode::Slip { .. });
         let slider = self.contacts.iter().zip(&self.frames).find(slips);
         let (Some((contact, frame)), true) = (slider, self.contacts.len() > 1) else { return };
-        let force = node_forces::force(&self.frames[0], &rate.reactions[self.contacts[0]]);
+        let force = node_contact_forces::force(&self.frames[0], &rate.reactions[self.contacts[0]]);
         let normal = dot(&force, &frame.normal);
         rate.reactions[self.contacts[0]] = Reaction::default();
         let mut tangential = add(&force, -normal, &frame.normal);
@@ -273,7 +273,8 @@ impl Changeable {
         };
         let is_held = self.contacts.iter().all(|contact| modes[*contact] == Mode::Stick);
         is_held.then(|| {
-            let of_contact = |(contact, frame): (&usize, &Frame)| node_forces::force(frame, &rate.reactions[*contact]);
+            let of_contact =
+                |(contact, frame): (&usize, &Frame)| node_contact_forces::force(frame, &rate.reactions[*contact]);
             let parts = self.contacts.iter().zip(&self.frames).map(of_contact);
             let whole = group.free_part(&parts.fold([0.0; 3], |sum, part| add(&sum, 1.0, &part)));
             group.margin_of_rate(&self.force, unloaded, zero, &whole)

@@ -1,7 +1,8 @@
 //! The sum of the friction cones of a node's obstacles.
 //!
-//! A force `R` lies in the sum of the cones `K_i` if its product with no direction in all their dual cones is negative
-//! (the bipolar theorem: R. T. Rockafellar, *Convex Analysis*, Princeton 1970, §14):
+//! A force `R` lies in the sum of the cones `K_i` if and only if its scalar product with every direction in the
+//! intersection of the dual cones is nonnegative (the bipolar theorem: R. T. Rockafellar, *Convex Analysis*, Princeton
+//! 1970, §14):
 //!
 //! ```text
 //! R in Σ K_i   <=>   min { y·R : |y| = 1, y·n_i >= sin φ_i } >= 0,      tan φ_i = μ_i
@@ -166,7 +167,7 @@ pub(super) fn at_bound(group: &ContactGroup, force: &Vector) -> Option<Vec<Vecto
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::contact::least_norm_reactions::least_reactions;
+    use crate::mechanics::contact::least_norm_projection::least_reactions;
     use crate::mechanics::contact::obstacle::RigidSurface;
     use crate::mechanics::contact::{ContactPair, Frame, Sliding};
 

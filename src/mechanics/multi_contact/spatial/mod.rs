@@ -17,7 +17,7 @@
 //! ```
 //!
 //! At this bound the node slides, although obstacles between which it is wedged could hold a larger force: such a force
-//! takes wedging reactions, which the loading has not produced. A node that arrives from one obstacle with a force
+//! requires wedging reactions, which the loading has not produced. A node that arrives from one obstacle with a force
 //! beyond this bound, and within the sum of the friction cones, is held, since no slide has such a force: where the
 //! force returns to the bound, the node may slide again, and where the force leaves the sum, no motion is compatible
 //! with it. Where the sum of the cones is all of space, the node is jammed and does not move, as in the plane. The
@@ -35,14 +35,14 @@ use crate::mechanics::multi_contact::spatial::tolerances::{
     BOUND_TOLERANCE, CONE_TOLERANCE, INDEPENDENCE_SINE, MEETING_FORCE_ROUNDING, NEGLIGIBLE_COMPONENT,
     PERPENDICULAR_COSINE,
 };
-use crate::mechanics::problem::node_forces::free_directions;
+use crate::mechanics::problem::node_contact_forces::free_directions;
 pub use sliding::{Edge, beside, taken_over};
 
 use crate::mechanics::contact::Frame;
-use crate::mechanics::contact::least_norm_reactions::{Cone, least_reactions};
+use crate::mechanics::contact::least_norm_projection::{Cone, least_reactions};
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::node_forces::{is_driven, reaction_in_space, total_force};
+use crate::mechanics::problem::node_contact_forces::{is_driven, reaction_in_space, total_force};
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::budget;
 

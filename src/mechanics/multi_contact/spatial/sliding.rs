@@ -4,7 +4,7 @@ use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, u
 use crate::mechanics::contact::{Frame, Mode, Reaction};
 use crate::mechanics::multi_contact::spatial::ContactGroup;
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::node_forces::Corner;
+use crate::mechanics::problem::node_contact_forces::Corner;
 use crate::mechanics::problem::state::State;
 
 /// The other of the two obstacles along whose edge a node in space slides in these modes, if it slides along an edge.

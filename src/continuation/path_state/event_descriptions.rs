@@ -1,0 +1,49 @@
+//! Descriptions of events.
+
+use crate::continuation::path_state::row_conversion::status;
+use crate::continuation::scene::Scene;
+use crate::mechanics::contact::Mode;
+use crate::mechanics::multi_contact::changeable_contacts::Standing;
+use crate::result::increment::Status;
+use std::sync::Arc;
+
+/// Description of the start of a stage; `met`: one of its bounds is already met.
+pub(crate) fn describe_start(scene: &Scene, stage: usize, met: bool) -> String {
+    let ends = if met { " and ends at once: its bound is met already" } else { "" };
+    format!("stage \"{}\" begins{ends}", scene.stages[stage].name)
+}
+
+/// Description of the contacts that change, with their old and new modes; where the path ends, of the contacts at the
+/// limit of their mode.
+///
+/// `names` are those of the contacts' nodes and obstacles.
+pub(crate) fn describe_change<'a>(
+    names: impl Iterator<Item = &'a (Arc<str>, Arc<str>)>,
+    old: &[Mode],
+    new: Option<&[Mode]>,
+    standings: &[Standing],
+) -> String {
+    let mut parts = Vec::new();
+    for ((index, before), (node, obstacle)) in old.iter().enumerate().zip(names) {
+        let after = new.map(|new| new[index]);
+        let word = |mode: Mode| match status(mode) {
+            Status::Free => "free",
+            Status::Stick => "stick",
+            Status::Slip => "slip",
+        };
+        match after {
+            Some(after) if after.continues(*before) => {}
+            Some(after) if word(after) == word(*before) => {
+                parts.push(format!("{node} on {obstacle}: slip turns round"));
+            }
+            Some(after) => parts.push(format!("{node} on {obstacle}: {} to {}", word(*before), word(after))),
+            None => match standings[index] {
+                Standing::Settled(_) => {}
+                Standing::OnCone { .. } => parts.push(format!("{node} on {obstacle}: on the friction cone")),
+                Standing::Cornered { .. } => parts.push(format!("{node} on {obstacle}: about to leave the corner")),
+                Standing::Touching => parts.push(format!("{node} on {obstacle}: reaction zero")),
+            },
+        }
+    }
+    if parts.is_empty() { "contact touches the limit of its mode and keeps it".to_owned() } else { parts.join("; ") }
+}

@@ -1,0 +1,251 @@
+//! A path being traced: the scene, the present point and the data from which the next step starts.
+
+use crate::branching::directions::feasible_direction::{DirectionChoice, Rules};
+use crate::branching::selection::selection_rule::Decision;
+use crate::complementarity::rate_search::branch_and_bound::Effort;
+use crate::continuation::path_state::contact_search::{self, FarContacts, Near};
+use crate::continuation::path_state::resumable_state::{Arriving, Listed, Phase, Progress};
+use crate::continuation::path_state::row_conversion::{self, RowSource};
+use crate::continuation::path_state::visited_states::{ClosedContact, Visited};
+use crate::continuation::scene::Scene;
+use crate::mechanics::contact::{Mode, Reaction};
+use crate::mechanics::multi_contact::changeable_contacts::{Standing, standings};
+use crate::mechanics::multi_contact::moving_planes::Carried;
+use crate::mechanics::multi_contact::spatial::taken_over;
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::node_contact_forces::{is_in_plane, taken_apart, total_force};
+use crate::mechanics::problem::state::State;
+use crate::mechanics::problem::tolerances::NEGLIGIBLE_FORCE;
+use crate::resources::budget::Breach;
+use crate::resources::cancel::CancelFlag;
+use crate::result::increment::{Increment, Point};
+use crate::result::program_iterate::ProgramIterate;
+use crate::result::stop_reason::{Outcome, StopReason};
+use crate::step::corrector::cached_factorisation::CachedFactorisation;
+use std::borrow::Cow;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Owner of everything that changes from increment to increment.
+pub(crate) struct PathTrace<'a> {
+    pub scene: &'a Scene,
+    pub cancel: CancelFlag,
+    began: Instant,
+    /// Solver time before this process resumed the path.
+    pub elapsed_before: f64,
+    /// Strain energy of the undeformed structure (prestress).
+    pub initial_strain: f64,
+    pub at: Progress,
+    pub near: Near,
+    pub far: FarContacts,
+    /// Factorisation for the next step.
+    pub cached: CachedFactorisation,
+    /// Iterates of the programs of the last increment, where they are kept.
+    pub iterates: Option<Vec<ProgramIterate>>,
+}
+
+impl<'a> PathTrace<'a> {
+    /// A path at a point that fits the scene; `elapsed_before`: solver time spent up to this point.
+    pub fn at(scene: &'a Scene, mut at: Progress, elapsed_before: f64, cancel: CancelFlag) -> Self {
+        let undeformed = vec![0.0; scene.structure.freedoms()];
+        let initial_strain = scene.structure.strain_energy(&undeformed);
+        at.hold(scene);
+        let near = Near::of(scene, &at);
+        let far = contact_search::far_contacts(scene, &at);
+        Self {
+            scene,
+            cancel,
+            began: Instant::now(),
+            elapsed_before,
+            initial_strain,
+            at,
+            near,
+            far,
+            cached: CachedFactorisation::default(),
+            iterates: None,
+        }
+    }
+
+    pub(crate) fn elapsed_s(&self) -> f64 {
+        self.elapsed_before + self.began.elapsed().as_secs_f64()
+    }
+
+    pub(crate) fn loading(&self) -> Loading<'_> {
+        self.near.loading(self.scene)
+    }
+
+    pub(crate) fn rules(&self) -> Rules<'_> {
+        let analysis = &self.scene.analysis;
+        let loads = || self.scene.stages[self.at.stage].pattern.forces.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let so_far = self.at.totals.force_scale;
+        let force_scale = if so_far > NEGLIGIBLE_FORCE { so_far } else { loads().max(NEGLIGIBLE_FORCE) };
+        let effort = Effort { most_modes: analysis.max_modes, certify: !analysis.keep_all, cancel: &self.cancel };
+        Rules { selection: analysis.selection, effort, force_scale }
+    }
+
+    pub(crate) fn end(&mut self, reason: StopReason) {
+        // A cancelled enumeration leaves its point without a direction.
+        let broken_off = self.cancel.is_cancelled() && reason.outcome() == Outcome::Stopped;
+        let reason = if broken_off { StopReason::Cancelled } else { reason };
+        self.at.phase = Phase::Ended;
+        self.at.totals.end(reason, self.elapsed_s());
+    }
+
+    /// Ends the path within an increment, which is discarded.
+    pub(crate) fn break_off(&mut self, breach: Breach, index: u64) {
+        self.at.phase = Phase::Ended;
+        self.at.totals.index = index;
+        let elapsed_s = self.elapsed_s();
+        self.at.totals.break_off(breach, elapsed_s);
+        // The factorisation for the next step occupies memory.
+        self.cached = CachedFactorisation::default();
+    }
+
+    pub(crate) fn standings(&self, state: &State) -> Vec<Standing> {
+        let scale = self.rules().force_scale;
+        standings(self.loading(), state, scale)
+    }
+
+    pub(crate) fn take(&mut self, decision: &mut Decision) {
+        if let Some(index) = decision.taken {
+            self.go(&decision.options[index]);
+            self.cached = std::mem::take(&mut decision.options[index].cached);
+            self.at.here.is_factorised = self.cached.is_one();
+        }
+    }
+
+    pub(crate) fn go(&mut self, choice: &DirectionChoice) {
+        self.at.here.modes.clone_from(&choice.modes);
+        (self.at.here.signature, self.at.here.is_factorised) = (None, false);
+        (self.at.here.before, self.at.here.is_singular) = (None, choice.is_singular);
+        self.at.here.beside.clone_from(&choice.beside);
+        self.at.here.load_sign = choice.load_sign;
+        self.at.here.rate = Some(choice.rate.clone());
+        // A node that leaves a corner along one of its obstacles, or slides along an edge, transfers its whole force
+        // there.
+        let (loading, state) = (self.loading(), &self.at.here.state);
+        let mut moved: Vec<(usize, Reaction)> = Vec::new();
+        for corner in loading.corners {
+            if !is_in_plane(loading, corner) {
+                moved.extend(taken_over(loading, corner, &choice.modes, state));
+                continue;
+            }
+            let closed = corner.closed(loading, state);
+            if let Some(carried) = Carried::of(loading, &closed, state) {
+                let force = total_force(loading, closed.iter().copied(), state);
+                moved.extend(closed.into_iter().zip(carried.reactions(loading, &choice.modes, &force, state)));
+                continue;
+            }
+            let mut active = corner.contacts.iter().copied().filter(|contact| choice.modes[*contact].is_active());
+            if let (Some(only), None) = (active.next(), active.next()) {
+                let force = total_force(loading, corner.contacts.iter().copied(), state);
+                let frame = loading.frame(only, state);
+                moved.push((only, taken_apart(&force, &frame, loading.contacts[only].friction)));
+            }
+        }
+        for (contact, reaction) in moved {
+            self.at.here.state.reactions[contact] = reaction;
+        }
+        for (reaction, mode) in self.at.here.state.reactions.iter_mut().zip(&choice.modes) {
+            if *mode == Mode::Free {
+                *reaction = Reaction::default();
+            }
+        }
+    }
+
+    pub(crate) fn emit(&mut self, mut emitted: Emitted<'_>) -> Increment {
+        // The path does not continue from here along the other directions.
+        emitted.options.iter_mut().for_each(|option| option.cached = CachedFactorisation::default());
+        let mut state = Cow::Borrowed(&self.at.here.state);
+        if let Some(reactions) = emitted.reactions {
+            state.to_mut().reactions = reactions;
+        }
+        let row = RowSource {
+            stage: self.at.stage,
+            loading: self.loading(),
+            whole: self.whole_loading(),
+            places: self.near.places(),
+            rows: self.near.rows(),
+            state: &state,
+            before: emitted.before,
+            modes: emitted.modes,
+            step: emitted.step,
+            point: &emitted.point,
+            options: &emitted.options,
+            taken: emitted.taken,
+            residual: emitted.residual,
+            error_estimate: emitted.error_estimate,
+            elapsed_s: self.elapsed_s(),
+            mode_named: emitted.mode_named,
+        };
+        let row = row_conversion::increment(self.scene, &self.at.totals, &row);
+        self.at.totals.note(&row);
+        self.at.listed = row.directions.is_some().then_some(Listed {
+            options: emitted.options,
+            taken: emitted.taken,
+            arriving: emitted.arriving,
+            point: emitted.point,
+            residual: emitted.residual,
+            error_estimate: emitted.error_estimate,
+        });
+        row
+    }
+
+    /// The loading of all contacts, including those out of reach.
+    pub(crate) fn whole_loading(&self) -> Loading<'_> {
+        contact_search::whole(self.scene, &self.at)
+    }
+
+    /// Adds every contact that could close within a few steps of this arc length to those in reach.
+    pub(crate) fn look_ahead(&mut self, step: f64) {
+        let reached = contact_search::reached_within(self.scene, &self.at, &mut self.far, step);
+        if !reached.is_empty() {
+            self.at.admit(&reached);
+            self.near = Near::of(self.scene, &self.at);
+            (self.cached, self.at.here.is_factorised) = (CachedFactorisation::default(), false);
+        }
+    }
+
+    /// Sets up the loading of the running stage, after a change of stage.
+    pub(crate) fn load_anew(&mut self) {
+        (self.cached, self.at.here.is_factorised) = (CachedFactorisation::default(), false);
+        self.near = Near::of(self.scene, &self.at);
+    }
+
+    /// Names of the nodes and obstacles of the contacts in reach.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &(Arc<str>, Arc<str>)> {
+        self.at.near.iter().map(|contact| &self.scene.contact_names[*contact])
+    }
+
+    /// The present state as recorded to detect a cycle: free contacts have no reaction and are omitted.
+    pub(crate) fn visit(&self) -> Visited {
+        let State { displacement, load, reactions } = &self.at.here.state;
+        let held = self.at.near.iter().zip(&self.at.here.modes).zip(reactions);
+        let held = held.filter(|((_, mode), _)| mode.is_active());
+        let held = held.map(|((contact, mode), reaction)| ClosedContact {
+            contact: *contact,
+            mode: *mode,
+            reaction: *reaction,
+        });
+        let mut all = Vec::with_capacity(self.at.near.len());
+        all.extend(held);
+        Visited { stage: self.at.stage, displacement: displacement.clone(), load: *load, held: all }
+    }
+}
+
+/// The data for [`PathTrace::emit`] that are not in the trace itself.
+pub(crate) struct Emitted<'a> {
+    pub before: &'a State,
+    /// Reactions at the end of the increment, where they differ from those with which the path continues.
+    pub reactions: Option<Vec<Reaction>>,
+    pub modes: &'a [Mode],
+    pub step: f64,
+    pub point: Point,
+    pub options: Vec<DirectionChoice>,
+    pub taken: Option<usize>,
+    pub residual: f64,
+    pub error_estimate: f64,
+    pub mode_named: Option<bool>,
+    /// `None` at a start.
+    pub arriving: Option<Arriving>,
+}

@@ -1,0 +1,226 @@
+//! Everything that determines the continuation of a path from its present point: the content of a checkpoint.
+
+use crate::branching::bifurcation::singularity::test_functions::Signature;
+use crate::branching::directions::feasible_direction::DirectionChoice;
+use crate::continuation::path_state::simultaneous_change_backoff::JoinBackoff;
+use crate::continuation::path_state::totals::Totals;
+use crate::continuation::path_state::visited_states::VisitedStates;
+use crate::continuation::scene::Scene;
+use crate::mechanics::contact::{Mode, Reaction};
+use crate::mechanics::equations::stage_end_criteria::End;
+use crate::mechanics::problem::loading::LoadPattern;
+use crate::mechanics::problem::state::{Rate, State};
+use crate::result::increment::Point;
+use crate::step::interpolation::PlacedPoint;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A path at its present point.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Progress {
+    pub phase: Phase,
+    pub stage: usize,
+    /// The stage ended at the present point; the next one begins with the next increment.
+    pub stage_over: bool,
+    /// Loads at which the previous stages ended.
+    pub reached: Vec<f64>,
+    /// Constant load of the previous stages, for every contact of the scene: see [`hold`](Self::hold).
+    #[serde(skip)]
+    pub held: Arc<LoadPattern>,
+    /// Indices of the scene's contacts in reach, in ascending order: each has one reaction and one mode.
+    pub near: Vec<usize>,
+    pub here: PresentPoint,
+    /// Arc length of the next attempted step.
+    pub step: f64,
+    /// Waiting time before contact changes are treated together again.
+    pub waiting: JoinBackoff,
+    /// Number of consecutive steps up to here that are too short for progress and change no contact.
+    pub creeping: u64,
+    pub totals: Totals,
+    pub counts: StageCounts,
+    /// States at which a direction was taken, to detect a cycle.
+    pub visited: VisitedStates,
+    /// The state in which the stage began and its first direction.
+    pub begun: Option<(State, Rate)>,
+    /// Directions listed with the present point.
+    pub listed: Option<Listed>,
+    /// The start of a path that follows another's direction.
+    pub followed: Option<Followed>,
+}
+
+/// The present point and the data for its continuation.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct PresentPoint {
+    pub state: State,
+    pub modes: Vec<Mode>,
+    /// Direction in `modes`; `None` before the stage's first decision.
+    pub rate: Option<Rate>,
+    pub load_sign: f64,
+    /// Error of the path up to the present point, where known.
+    pub drift: Option<Rate>,
+    /// The previous point, in the same modes and of the same stage.
+    pub before: Option<PlacedPoint>,
+    /// Arc length between the last two contact changes, if both ended a step and the last is the present point.
+    pub apart: Option<f64>,
+    /// Signature to detect smooth bifurcations; `None` until known in these modes.
+    pub signature: Option<Signature>,
+    /// The direction was found with a factorisation that also serves for the step along it (`cached_factorisation`).
+    #[serde(default)]
+    pub is_factorised: bool,
+    /// The equations of `modes` had a second null vector where the direction was taken.
+    #[serde(default)]
+    pub is_singular: bool,
+    /// Offset of the path from the direction: see `choice::DirectionChoice`.
+    #[serde(default)]
+    pub beside: Option<Rate>,
+}
+
+/// Counts of the running stage.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+pub(crate) struct StageCounts {
+    pub increments: u64,
+    pub limit_points: u64,
+    pub contact_changes: u64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Phase {
+    NotStarted,
+    Running,
+    Ended,
+}
+
+impl Progress {
+    /// The state of a path before its first increment.
+    pub fn new(scene: &Scene) -> Self {
+        let near: Vec<usize> = if scene.analysis.keep_all { (0..scene.contacts.len()).collect() } else { Vec::new() };
+        let contacts = near.len();
+        Self {
+            phase: Phase::NotStarted,
+            stage: 0,
+            stage_over: false,
+            reached: Vec::new(),
+            held: Arc::default(),
+            near,
+            here: PresentPoint {
+                state: State::at_rest(&scene.structure, contacts),
+                modes: vec![Mode::Free; contacts],
+                rate: None,
+                load_sign: 0.0,
+                drift: None,
+                before: None,
+                apart: None,
+                signature: None,
+                is_factorised: false,
+                is_singular: false,
+                beside: None,
+            },
+            step: scene.analysis.arc_length.initial,
+            waiting: JoinBackoff::default(),
+            creeping: 0,
+            totals: Totals::begun(),
+            counts: StageCounts::default(),
+            visited: VisitedStates::default(),
+            begun: None,
+            listed: None,
+            followed: None,
+        }
+    }
+}
+
+impl Progress {
+    /// Adds contacts, which are free, to those in reach and renumbers these.
+    pub fn admit(&mut self, contacts: &[usize]) {
+        let before = self.near.clone();
+        self.near.extend(contacts);
+        self.near.sort_unstable();
+        let old: Vec<Option<usize>> = self.near.iter().map(|contact| before.binary_search(contact).ok()).collect();
+        let reactions = |values: &mut Vec<Reaction>| *values = spread(values, &old);
+        let modes = |values: &mut Vec<Mode>| *values = spread_modes(values, &old);
+        let rate = |rate: &mut Rate| reactions(&mut rate.reactions);
+        let listed = |listed: &mut Listed| {
+            for option in &mut listed.options {
+                rate(&mut option.rate);
+                modes(&mut option.modes);
+            }
+            listed.arriving.iter_mut().for_each(|arriving| modes(&mut arriving.modes));
+        };
+        let state = |state: &mut State| reactions(&mut state.reactions);
+        state(&mut self.here.state);
+        modes(&mut self.here.modes);
+        self.here.rate.iter_mut().for_each(rate);
+        self.here.drift.iter_mut().for_each(rate);
+        if let Some(before) = &mut self.here.before {
+            state(&mut before.state);
+            rate(&mut before.rate);
+        }
+        if let Some((begun, direction)) = &mut self.begun {
+            state(begun);
+            rate(direction);
+        }
+        self.listed.iter_mut().for_each(listed);
+        self.followed.iter_mut().for_each(|followed| listed(&mut followed.listed));
+    }
+
+    /// Sums up the constant load of the previous stages: the same bits whenever it is computed.
+    pub fn hold(&mut self, scene: &Scene) {
+        let mut held = scene.stages[0].pattern.zeroed();
+        for (stage, load) in scene.stages.iter().zip(&self.reached) {
+            held.add(*load, &stage.pattern);
+        }
+        self.held = Arc::new(held);
+    }
+}
+
+fn spread(near: &[Reaction], places: &[Option<usize>]) -> Vec<Reaction> {
+    places.iter().map(|place| place.map_or_else(Reaction::default, |place| near[place])).collect()
+}
+
+fn spread_modes(near: &[Mode], places: &[Option<usize>]) -> Vec<Mode> {
+    places.iter().map(|place| place.map_or(Mode::Free, |place| near[place])).collect()
+}
+
+impl StageCounts {
+    /// Whether one of the counts ends the stage.
+    pub fn end_stage(&self, ends: &[End]) -> bool {
+        ends.iter().any(|end| match end {
+            End::LimitPoints(count) => self.limit_points >= *count,
+            End::ContactChanges(count) => self.contact_changes >= *count,
+            End::Increments(count) => self.increments >= *count,
+            End::Load { .. } | End::Displacement { .. } => false,
+        })
+    }
+}
+
+/// The directions listed at a point, and the data of the point before one of them was taken.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Listed {
+    pub options: Vec<DirectionChoice>,
+    pub taken: Option<usize>,
+    /// `None` where the path begins.
+    pub arriving: Option<Arriving>,
+    pub point: Point,
+    pub residual: f64,
+    pub error_estimate: f64,
+}
+
+/// The data with which a path arrives at a point.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Arriving {
+    pub modes: Vec<Mode>,
+    pub load_sign: f64,
+    /// Counts that include the increment that led here, but not its events.
+    pub counts: StageCounts,
+}
+
+/// The start of a path that follows a direction of another.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Followed {
+    pub listed: Listed,
+    pub direction: usize,
+    pub event: String,
+}

@@ -1,0 +1,132 @@
+//! External work and dissipation along an increment.
+//!
+//! ```text
+//! ΔW = f_held·Δu + ∫ s d(f·u) + ∫ Q ds,      ΔD = -Σ ∫ r_t·dx
+//! ```
+//!
+//! `Q` is the force of the supports and obstacles that move with the load factor, work-conjugate to the load factor;
+//! `x` is the position of a node relative to its obstacle.
+//!
+//! Both integrands are products along a curve whose ends and end directions are known: cubic Hermite interpolants of
+//! both factors, integrated exactly, give an error of fourth order in the step. The interpolants' parameter is arc
+//! length; the chord `S` between directions that differ by an angle `θ` spans `S (1 + θ²/24)` of it.
+
+use crate::mechanics::contact::Mode;
+use crate::mechanics::contact::vector::{add, dot as inner};
+use crate::mechanics::problem::contact_jacobian;
+use crate::mechanics::problem::equilibrium;
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::node_contact_forces::reaction_in_space;
+use crate::mechanics::problem::state::{Rate, State, dot};
+
+/// A scalar at both ends of an increment with its derivatives by arc length.
+#[derive(Clone, Copy)]
+struct Ends {
+    first: f64,
+    first_rate: f64,
+    last: f64,
+    last_rate: f64,
+}
+
+/// A point and the direction of the path there.
+pub type Placed<'a> = (&'a State, &'a Rate);
+
+/// `(ΔW, ΔD)` of an increment in one mode; `turned` is the angle (radians) by which the path's direction turns.
+pub fn work_and_dissipation(
+    loading: Loading<'_>,
+    modes: &[Mode],
+    start: Placed<'_>,
+    end: Placed<'_>,
+    turned: f64,
+) -> (f64, f64) {
+    let length = start.0.distance(end.0) * (1.0 + turned * turned / 24.0);
+    let load = Ends { first: start.0.load, first_rate: start.1.load, last: end.0.load, last_rate: end.1.load };
+    // Motions are measured from the start, so that large displacements cost no digits.
+    let along_chord = |forces: &[f64]| -> f64 {
+        let change = end.0.displacement.iter().zip(&start.0.displacement).map(|(end, start)| end - start);
+        forces.iter().zip(change).map(|(force, change)| force * change).sum()
+    };
+    let path = Ends {
+        first: 0.0,
+        first_rate: dot(&loading.pattern.forces, &start.1.displacement),
+        last: along_chord(&loading.pattern.forces),
+        last_rate: dot(&loading.pattern.forces, &end.1.displacement),
+    };
+    let mut work = along_chord(&loading.held.forces) + integral(load, path, length);
+    if loading.pattern.moves_boundary() {
+        let (first, first_rate) = boundary_force(loading, start);
+        let (last, last_rate) = boundary_force(loading, end);
+        let driven = Ends { first: 0.0, last: load.last - load.first, ..load };
+        work += integral(Ends { first, first_rate, last, last_rate }, driven, length);
+    }
+    let mut dissipation = 0.0;
+    for (index, (mode, contact)) in modes.iter().zip(loading.contacts).enumerate() {
+        if !matches!(mode, Mode::Slip { .. }) || contact.tangents() == 0 {
+            continue;
+        }
+        let chord = add(&loading.relative(index, end.0), -1.0, &loading.relative(index, start.0));
+        let [first, last] = [start, end].map(|at| loading.relative_rate(index, at.0, at.1));
+        for k in 0..loading.structure.dimension {
+            let traction = Ends {
+                first: start.0.reactions[index].tangential[k],
+                first_rate: start.1.reactions[index].tangential[k],
+                last: end.0.reactions[index].tangential[k],
+                last_rate: end.1.reactions[index].tangential[k],
+            };
+            let slip = Ends { first: 0.0, first_rate: first[k], last: chord[k], last_rate: last[k] };
+            dissipation -= integral(traction, slip, length);
+        }
+    }
+    (work, dissipation)
+}
+
+/// The force `Q` and its derivative by arc length.
+pub fn boundary_force(loading: Loading<'_>, at: Placed<'_>) -> (f64, f64) {
+    let (state, rate) = at;
+    let structure = loading.structure;
+    let mut force = vec![0.0; structure.freedoms()];
+    equilibrium::write_unbalanced(loading, state, &mut force);
+    let mut change = vec![0.0; structure.freedoms()];
+    structure.add_stiffness_times(&state.displacement, &rate.displacement, &mut change);
+    change.iter_mut().zip(&loading.pattern.forces).for_each(|(change, force)| *change -= rate.load * force);
+    let (mut sum, mut sum_rate) = (0.0, 0.0);
+    for (index, contact) in loading.contacts.iter().enumerate() {
+        let (reaction, reaction_rate) = reaction_in_space(loading, index, at);
+        loading.each_column(index, state, |freedom, column| {
+            force[freedom] -= inner(column, &reaction);
+            change[freedom] -= inner(column, &reaction_rate);
+        });
+        contact_jacobian::each_curvature(structure, contact, &state.displacement, &reaction, |row, column, value| {
+            change[row] -= value * rate.displacement[column];
+        });
+        sum += inner(&reaction, &loading.pattern.shifts[index]);
+        sum_rate += inner(&reaction_rate, &loading.pattern.shifts[index]);
+    }
+    for (freedom, motion) in loading.pattern.supports.iter().enumerate() {
+        sum += force[freedom] * motion;
+        sum_rate += change[freedom] * motion;
+    }
+    (sum, sum_rate)
+}
+
+/// `∫ a db` over the length; the integrand is of degree five, so that Gauss's three points are exact.
+fn integral(a: Ends, b: Ends, length: f64) -> f64 {
+    let offset = 0.6_f64.sqrt() / 2.0;
+    [(0.5 - offset, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.5 + offset, 5.0 / 18.0)]
+        .iter()
+        .map(|&(x, weight)| weight * value(a, length, x) * slope(b, length, x))
+        .sum()
+}
+
+fn value(ends: Ends, length: f64, x: f64) -> f64 {
+    let y = 1.0 - x;
+    y * y * ((1.0 + 2.0 * x) * ends.first + x * length * ends.first_rate)
+        + x * x * ((1.0 + 2.0 * y) * ends.last - y * length * ends.last_rate)
+}
+
+/// Derivative with respect to `x`, the arc length over the length of the increment.
+fn slope(ends: Ends, length: f64, x: f64) -> f64 {
+    let y = 1.0 - x;
+    6.0 * x * y * (ends.last - ends.first)
+        + length * (y * (1.0 - 3.0 * x) * ends.first_rate + x * (3.0 * x - 2.0) * ends.last_rate)
+}
