@@ -80,6 +80,6 @@ pub(crate) const EVENT_TOLERANCE: f64 = 1e-13;
 pub(crate) const BOUND_TOLERANCE: f64 = 1e-12;
 
 /// Tolerance, over their scales, within which two quantities are zero at the same point. The value is the magnitude
-/// 1e-10 up to which gaps and reactions are zero at a point (`natural_residual::ZERO`), so that no step of no length
+/// 1e-10 up to which gaps and reactions are zero at a point (`CONTACT_TOLERANCE`), so that no step of no length
 /// remains up to such a change; the value is a thousand times the event tolerance.
 pub(crate) const COINCIDENCE_TOLERANCE: f64 = 1e-10;

@@ -1,5 +1,9 @@
 //! Block pivoting for complementarity problems: every violated pair is switched at the same time.
 //!
+//! ```text
+//! w = q + M z,      0 <= w ⊥ z >= 0:      for each index  w_i = 0  or  z_i = 0,  switched where the other is negative
+//! ```
+//!
 //! Block pivoting takes few rounds but may cycle (M. M. Kostreva, Optimization 9 (1978) 13). After a number of rounds
 //! only the last violated condition changes, which is finite where there is one solution for each right-hand side (K. G.
 //! Murty's method; J. J. Júdice, F. M. Pires, Computers Ops. Res. 21 (1994) 587, doi:10.1016/0305-0548(94)90106-6).

@@ -1,7 +1,7 @@
 //! The numerical tolerances, factors and limits of this folder, with the reason for each value.
 
 /// Gap (dimensionless) up to which a contact is closed in the check of the supports. The value is the gap 1e-10 that is
-/// zero at every point of the path (`natural_residual::ZERO`): well above the round-off of the coordinates, and below
+/// zero at every point of the path (`CONTACT_TOLERANCE`): well above the round-off of the coordinates, and below
 /// the measure of error 1e-9.
 pub(crate) const CLOSED_GAP: f64 = 1e-10;
 
