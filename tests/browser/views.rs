@@ -6,6 +6,7 @@ use crate::common::browser::Browser;
 use crate::common::process::{self, Served};
 use crate::common::service::scene;
 use serde_json::{Value, json};
+use std::time::{Duration, Instant};
 
 const STATUS: &str = "document.getElementById('status')?.textContent";
 const PATH: &str = "document.getElementById('path-plot')";
@@ -94,9 +95,18 @@ async fn structure_and_path_point_at_each_other_and_space_is_turned_by_dragging(
     browser.visit(&format!("{}/?jobs={id}", served.url())).await;
     browser.until(&format!("{STRUCTURE}.data?.length > 3")).await;
     let size = browser.ask(&format!("{MARK}.marker.size")).await.as_f64().expect("a number");
-    let (x, y) = browser.middle_of("#structure-plot").await;
-    browser.drag(&[(x - 2.0, y), (x, y)], false).await;
-    browser.until(&format!("{MARK}.marker.size > {size}")).await;
+    // A page that is still drawing moves what the pointer is over.
+    let began = Instant::now();
+    let (x, y) = loop {
+        let (x, y) = browser.middle_of("#structure-plot").await;
+        browser.drag(&[(x - 2.0, y), (x, y)], false).await;
+        tokio::time::sleep(Duration::from_millis(100)).await;
+        if browser.ask(&format!("{MARK}.marker.size > {size}")).await == true {
+            break (x, y);
+        }
+        assert!(began.elapsed() < process::PATIENCE, "the mark does not grow");
+        browser.drag(&[(1.0, 1.0)], false).await;
+    };
     let places = format!("{STRUCTURE}.data.find(({{name}}) => name === 'node').x");
     let before = browser.ask(&places).await;
     browser.drag(&[(x, y), (x + 40.0, y + 10.0), (x + 80.0, y + 20.0)], true).await;

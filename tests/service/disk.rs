@@ -129,8 +129,10 @@ async fn a_damaged_page_is_found_and_told_and_nothing_is_written_beside_it() {
         let answer = server.get("/readyz").await;
         if answer.status() == 503 {
             let problem: Value = answer.json().await.expect("a problem");
-            assert!(problem["detail"].as_str().expect("a text").contains("the database is damaged"), "{problem}");
-            break;
+            // A busy machine may say first that the database does not answer.
+            if problem["detail"].as_str().expect("a text").contains("the database is damaged") {
+                break;
+            }
         }
         assert!(began.elapsed() < PATIENCE, "it is not found");
         tokio::time::sleep(Duration::from_millis(10)).await;

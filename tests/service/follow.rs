@@ -153,7 +153,7 @@ async fn a_follower_stands_on_its_own_and_is_taken_up_by_another_process() {
     assert_eq!(with_key("another", &asked).await.0, StatusCode::NOT_FOUND);
     assert!(server.stop().await);
     let lost = store::open(&database).await.expect("a store");
-    let claim = lost.claim("lost", Duration::from_secs(5)).await.expect("a claim").expect("a job");
+    let claim = lost.claim("lost", Duration::from_secs(60)).await.expect("a claim").expect("a job");
     assert_eq!(claim.lease.job.to_string(), name(&queued));
     let stored: Vec<Line> =
         (0..4).zip(&expected).map(|(index, body)| Line { index, body: body.clone(), branch: None }).collect();

@@ -30,7 +30,7 @@ fn serve() {
     let runtime = tokio::runtime::Runtime::new().expect("a runtime");
     runtime.block_on(async {
         let store = store::open(&database).await.expect("the database opens");
-        let lease = Duration::from_millis(300);
+        let lease = Duration::from_secs(1);
         let settings = Settings { workers: 3, lease, max_attempts: 3, ..Settings::default() };
         let solver = MadeUp::pausing(Duration::from_millis(1));
         let front = ListenOptions { listen: any_port(), connections: CONNECTIONS, access: Access::loopback() };

@@ -55,7 +55,7 @@ async fn a_lost_workers_job_is_taken_over_and_its_late_writes_are_refused() {
     let database = folder.path().join("jobs.db");
     let lost = store::open(&database).await.expect("a store");
     let id = queued(lost.as_ref(), job(3)).await;
-    let claim = lost.claim("lost", Duration::from_secs(5)).await.expect("a claim").expect("a job");
+    let claim = lost.claim("lost", Duration::from_secs(60)).await.expect("a claim").expect("a job");
     let before = [line(0, "{\"index\":0,\"elapsed_s\":0}"), line(1, "{\"index\":1,\"elapsed_s\":0}")];
     lost.append(&claim.lease, &batch(&before), Duration::from_millis(50)).await.expect("stored");
 
