@@ -1,12 +1,13 @@
 //! Increments as CSV (RFC 4180, lines ended by a single line feed).
 //!
-//! The request determines the columns: one for every component of every recorded node, and a group for every contact that may
-//! have a row, such as `tip.x`, `tip.y`, `tip/floor.status`, `tip/floor.gap`. Values are assigned by name; missing values are
-//! empty cells.
+//! The request determines the columns: one for every component of every recorded node, a group for every contact that may
+//! have a row, such as `tip.x`, `tip.y`, `tip/floor.status`, `tip/floor.gap`, and the forces of recorded elements and supports,
+//! such as `elements/0.axial_force` and `pin.reaction.x`. Values are assigned by name; missing values are empty cells.
 
 use crate::check::measure::Errors;
 use crate::model::JobRequest;
-use crate::model::request::{Contact, Record};
+use crate::model::request::recorded_forces::{element_label, recorded_elements, recorded_supports};
+use crate::model::request::{Contact, Element, Record};
 use crate::output::csv::CsvRow;
 use crate::result::increment::{Diagnostics, Increment, PointKind, Status};
 use std::collections::HashSet;
@@ -19,6 +20,17 @@ pub struct Table {
     dimension: usize,
     nodes: Vec<String>,
     contacts: Vec<ContactColumns>,
+    elements: Vec<ElementColumns>,
+    /// Nodes with recorded reactions of their supports.
+    supports: Vec<String>,
+}
+
+#[derive(Debug, Clone)]
+struct ElementColumns {
+    place: u64,
+    label: String,
+    /// An axial force in place of a vector.
+    is_bar: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -43,7 +55,18 @@ impl Table {
         });
         let columns =
             |contact: &Contact| ContactColumns { node: contact.node.clone(), obstacle: contact.obstacle.clone() };
-        Self { dimension: model.dimension, nodes, contacts: contacts.map(columns).collect() }
+        let element = |place: usize| ElementColumns {
+            place: place as u64,
+            label: element_label(model, place),
+            is_bar: matches!(model.elements[place], Element::Bar { .. }),
+        };
+        Self {
+            dimension: model.dimension,
+            nodes,
+            contacts: contacts.map(columns).collect(),
+            elements: recorded_elements(request).into_iter().map(element).collect(),
+            supports: recorded_supports(request).into_iter().map(str::to_owned).collect(),
+        }
     }
 
     /// The header line with its line feed.
@@ -53,21 +76,32 @@ impl Table {
             line.text(name);
         }
         let tangents = self.dimension - 1;
+        let axes = || AXES.iter().take(self.dimension);
         for node in &self.nodes {
-            for axis in AXES.iter().take(self.dimension) {
-                line.text(&format!("{node}.{axis}"));
-            }
+            axes().for_each(|axis| line.text(&format!("{node}.{axis}")));
         }
         for ContactColumns { node, obstacle } in &self.contacts {
             for name in ["status", "gap", "normal_reaction"] {
                 line.text(&format!("{node}/{obstacle}.{name}"));
             }
-            for name in ["tangential_reaction", "slip"] {
+            for name in ["tangential_reaction", "slip", "slip_total"] {
                 for tangent in 1..=tangents {
                     line.text(&format!("{node}/{obstacle}.{name}.{tangent}"));
                 }
             }
+            axes().for_each(|axis| line.text(&format!("{node}/{obstacle}.reaction.{axis}")));
         }
+        for ElementColumns { label, is_bar, .. } in &self.elements {
+            if *is_bar {
+                line.text(&format!("elements/{label}.axial_force"));
+            } else {
+                axes().for_each(|axis| line.text(&format!("elements/{label}.force.{axis}")));
+            }
+        }
+        for node in &self.supports {
+            axes().for_each(|axis| line.text(&format!("{node}.reaction.{axis}")));
+        }
+        axes().for_each(|axis| line.text(&format!("applied_force_{axis}")));
         for name in ["external_work", "strain_energy", "dissipated"] {
             line.text(name);
         }
@@ -108,7 +142,23 @@ impl Table {
             line.optional(state.map(|state| state.normal_reaction));
             line.numbers(state.map(|state| state.tangential_reaction.as_slice()).unwrap_or_default(), tangents);
             line.numbers(state.map(|state| state.slip.as_slice()).unwrap_or_default(), tangents);
+            line.numbers(state.map(|state| state.slip_total.as_slice()).unwrap_or_default(), tangents);
+            line.numbers(state.map(|state| state.reaction.as_slice()).unwrap_or_default(), self.dimension);
         }
+        let mut rows = increment.elements.iter().peekable();
+        for columns in &self.elements {
+            let state = rows.next_if(|row| row.element == columns.place);
+            if columns.is_bar {
+                line.optional(state.and_then(|state| state.axial_force));
+            } else {
+                let force = state.and_then(|state| state.force.as_deref());
+                line.numbers(force.unwrap_or_default(), self.dimension);
+            }
+        }
+        for node in &self.supports {
+            line.numbers(increment.supports.get(node.as_str()).unwrap_or_default(), self.dimension);
+        }
+        line.numbers(&increment.applied_forces, self.dimension);
         let (energy, diagnostics) = (&increment.energy, &increment.diagnostics);
         for value in [energy.external_work, energy.strain, energy.dissipated] {
             line.number(value);

@@ -1,6 +1,6 @@
 //! One accepted point of the path, as it is streamed and stored: in the user's units, under the user's names.
 
-use crate::result::displacements::Displacements;
+use crate::result::nodal_values::NodalValues;
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 use std::sync::Arc;
@@ -21,9 +21,22 @@ pub struct Increment {
     pub step: f64,
     /// Node name to displacement (length); the nodes that `analysis.record` asks for.
     #[cfg_attr(feature = "server", schema(value_type = indexmap::IndexMap<String, Vec<f64>>))]
-    pub displacements: Displacements,
+    pub displacements: NodalValues,
     /// In the model's order; those that `analysis.record` asks for.
     pub contacts: Vec<ContactState>,
+    /// Forces of the elements, in the model's order; those that `analysis.record` asks for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub elements: Vec<ElementState>,
+    /// Name of a supported node to the force of the supports on the structure there, in global axes; 0 along free
+    /// components. The nodes that `analysis.record` asks for.
+    #[serde(default, skip_serializing_if = "NodalValues::is_empty")]
+    #[cfg_attr(feature = "server", schema(value_type = indexmap::IndexMap<String, Vec<f64>>))]
+    pub supports: NodalValues,
+    /// Sum of the forces that the load patterns apply to the nodes, supported ones included, in global axes; the reactions
+    /// of supports and obstacles are not part of it.
+    #[serde(default, skip_serializing_if = "SmallVec::is_empty")]
+    #[cfg_attr(feature = "server", schema(value_type = Vec<f64>))]
+    pub applied_forces: SpaceVector,
     pub point: Point,
     /// Feasible one-sided directions, the one taken among them; present where there is a choice.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -47,9 +60,17 @@ pub struct ContactState {
     /// and of unit length, `t`, and `n × t`.
     #[cfg_attr(feature = "server", schema(value_type = Vec<f64>))]
     pub tangential_reaction: Tangential,
+    /// Force of the obstacle on the node in global axes (`dimension` components): normal and tangential reaction together.
+    #[serde(default, skip_serializing_if = "SmallVec::is_empty")]
+    #[cfg_attr(feature = "server", schema(value_type = Vec<f64>))]
+    pub reaction: SpaceVector,
     /// Motion against the obstacle in this increment along the same tangents (length).
     #[cfg_attr(feature = "server", schema(value_type = Vec<f64>))]
     pub slip: Tangential,
+    /// Sum of `slip` over the increments from the start of the path (length), each along the tangents of its increment.
+    #[serde(default, skip_serializing_if = "SmallVec::is_empty")]
+    #[cfg_attr(feature = "server", schema(value_type = Vec<f64>))]
+    pub slip_total: Tangential,
     /// Equilibrium does not tell this contact's reaction from those of others that hold the same node: the reactions of
     /// least norm are given.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -58,6 +79,29 @@ pub struct ContactState {
 
 /// Components along an obstacle's tangents.
 pub type Tangential = SmallVec<[f64; 2]>;
+
+/// Components along the global axes, as many as the space has dimensions.
+pub type SpaceVector = SmallVec<[f64; 3]>;
+
+/// The force that an element carries.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct ElementState {
+    /// Place in the model's `elements`, from 0.
+    pub element: u64,
+    /// The element's name, where the model gives one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "server", schema(value_type = Option<String>))]
+    pub name: Option<Arc<str>>,
+    /// Of a bar: force along its axis, tension positive, prestress included.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub axial_force: Option<f64>,
+    /// Of a spring: its stiffness times the displacement of its first node relative to the second, or to the ground, in
+    /// global axes. The spring acts on its first node with the opposite of this force.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "server", schema(value_type = Option<Vec<f64>>))]
+    pub force: Option<SpaceVector>,
+}
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]

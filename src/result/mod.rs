@@ -4,12 +4,12 @@
 //! |---|---|
 //! | `plan` | what a scene needs and what is left out |
 //! | `increment` | one accepted point |
-//! | `displacements` | displacements by node, the names shared by all rows |
+//! | `nodal_values` | vectors by node (displacements, reactions), the names shared by all rows |
 //! | `program_iterate` | a point on the way to the end of an increment by its program |
 //! | `stop_reason`, `report` | why a path ended, and its totals |
 
-pub mod displacements;
 pub mod increment;
+pub mod nodal_values;
 pub mod plan;
 pub mod program_iterate;
 pub mod report;

@@ -4,7 +4,9 @@ use arcslip::check::judged::{JudgedCheckpoint, JudgedIncrement, JudgedReport, Me
 use arcslip::check::measure::{Errors, Maxima};
 use arcslip::model::{InputErrors, JobRequest};
 use arcslip::resources::cancel::CancelFlag;
-use arcslip::result::increment::{ContactState, Diagnostics, Energy, Increment, Point, PointKind, Status};
+use arcslip::result::increment::{
+    ContactState, Diagnostics, ElementState, Energy, Increment, Point, PointKind, Status,
+};
 use arcslip::result::plan::Plan;
 use arcslip::result::report::Report;
 use arcslip::result::stop_reason::StopReason;
@@ -167,9 +169,14 @@ fn increment(index: u64, run: u64) -> Increment {
             gap: 0.0,
             normal_reaction: along,
             tangential_reaction: [-0.3 * along].into_iter().collect(),
+            reaction: [-0.3 * along, along].into_iter().collect(),
             slip: [0.1].into_iter().collect(),
+            slip_total: [along].into_iter().collect(),
             indeterminate: false,
         }],
+        elements: vec![ElementState { element: 0, name: None, axial_force: Some(-along), force: None }],
+        supports: [("pin".into(), vec![0.1 * along, -along])].into_iter().collect(),
+        applied_forces: [along, 0.0].into_iter().collect(),
         point: Point {
             kind: if index == 0 { PointKind::Start } else { PointKind::Regular },
             bifurcation: false,

@@ -113,6 +113,7 @@ fn klarbring_in_other_stiffnesses_and_units() {
             request.model.elements = vec![arcslip::model::request::Element::Spring {
                 nodes: vec!["node".into()],
                 stiffness: vec![vec![a * unit, -b * unit], vec![-b * unit, c * unit]],
+                name: None,
             }];
             request.model.contacts[0].friction = friction;
             request.model.stages[0].forces.insert("node".into(), vec![0.0, -force]);

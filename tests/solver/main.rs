@@ -20,6 +20,7 @@ mod cycle;
 mod endings;
 mod exact_scenes;
 mod folded_slip;
+mod forces;
 mod held_beyond_slides;
 mod hidden_events;
 mod invariance;

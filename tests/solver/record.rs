@@ -4,7 +4,9 @@ use crate::common::paths::scene;
 use arcslip::check::judged::{JudgedIncrement, JudgedPath, JudgedReport};
 use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
-use arcslip::model::request::{Record, RecordedContact, RecordedContacts};
+use arcslip::model::request::{
+    ForceRange, Record, RecordedContact, RecordedContacts, RecordedElements, RecordedSupports,
+};
 use arcslip::resources::cancel::CancelFlag;
 use arcslip::result::increment::{Increment, PointKind};
 
@@ -140,7 +142,14 @@ fn nodes_contacts_and_directions_are_cut_after_the_judgement() {
     assert!(without.junctions.is_empty() && without.increments.iter().all(|row| row.increment.directions.is_none()));
     assert_eq!(without.report, all.report);
     let none = RecordedContacts::Named(Vec::new());
-    let nothing = Record { nodes: Some(Vec::new()), contacts: Some(none), every: 1_000, directions: false };
+    let nothing = Record {
+        nodes: Some(Vec::new()),
+        contacts: Some(none),
+        elements: Some(RecordedElements::Range(ForceRange::None)),
+        supports: Some(RecordedSupports::Range(ForceRange::None)),
+        every: 1_000,
+        directions: false,
+    };
     let bytes = |whole: &Whole| serde_json::to_string(&whole.increments).expect("written").len();
     assert!(4 * bytes(&whole(&recorded("arch-type-truss", nothing))) < bytes(&all));
 }

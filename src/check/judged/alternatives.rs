@@ -94,8 +94,8 @@ fn sign(direction: &Direction, largest: f64) -> i8 {
 #[cfg(test)]
 mod tests {
     use super::Alternatives;
-    use crate::result::displacements::Displacements;
     use crate::result::increment::{ContactState, Diagnostics, Direction, Energy, Increment, Point, PointKind, Status};
+    use crate::result::nodal_values::NodalValues;
     use smallvec::smallvec;
 
     fn direction(contacts: Status, load_rate: f64) -> Direction {
@@ -113,7 +113,9 @@ mod tests {
             gap: 0.0,
             normal_reaction: 1.0,
             tangential_reaction: smallvec![-0.3],
+            reaction: smallvec![-0.3, 1.0],
             slip: smallvec![0.1],
+            slip_total: smallvec![0.1],
             indeterminate: false,
         };
         Increment {
@@ -122,8 +124,11 @@ mod tests {
             load_factor: 1.0,
             arc_length: 0.0,
             step: 0.1,
-            displacements: Displacements::default(),
+            displacements: NodalValues::default(),
             contacts: vec![contact],
+            elements: Vec::new(),
+            supports: NodalValues::default(),
+            applied_forces: smallvec![],
             point: Point { kind, bifurcation, event, better_direction, unexplored_modes, degenerate },
             directions: Some(directions),
             energy: Energy::default(),

@@ -1,6 +1,7 @@
 //! Selects the parts of a judged increment that are recorded.
 
 use crate::model::JobRequest;
+use crate::model::request::recorded_forces::recorded_supports;
 use crate::result::increment::{ContactState, Increment, PointKind};
 use std::collections::HashSet;
 
@@ -11,6 +12,8 @@ pub(super) struct Recorder {
     nodes: Option<Vec<bool>>,
     /// Node and obstacle of the selected contacts, in the order of the model; `None`: every row is kept.
     contacts: Option<Vec<(String, String)>>,
+    /// One for each support of the model; `None`: the reactions of all are kept.
+    supports: Option<Vec<bool>>,
     every: u64,
     directions: bool,
 }
@@ -33,7 +36,10 @@ impl Recorder {
             let names = model.contacts.iter().map(|contact| (contact.node.clone(), contact.obstacle.clone()));
             names.filter(|(node, obstacle)| named.contains(&(node.as_str(), obstacle.as_str()))).collect()
         });
-        Self { nodes, contacts, every: record.every, directions: record.directions }
+        let recorded: HashSet<&str> = recorded_supports(request).into_iter().collect();
+        let supports = (recorded.len() < model.supports.len())
+            .then(|| model.supports.keys().map(|name| recorded.contains(name.as_str())).collect());
+        Self { nodes, contacts, supports, every: record.every, directions: record.directions }
     }
 
     pub fn directions(&self) -> bool {
@@ -52,6 +58,9 @@ impl Recorder {
     pub fn cut(&self, mut increment: Increment) -> Increment {
         if let Some(kept) = &self.nodes {
             increment.displacements.keep(|node| kept.get(node).is_some_and(|kept| *kept));
+        }
+        if let Some(kept) = &self.supports {
+            increment.supports.keep(|support| kept.get(support).is_some_and(|kept| *kept));
         }
         if !self.directions {
             increment.directions = None;

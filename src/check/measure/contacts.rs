@@ -1,8 +1,9 @@
 //! Checks a contact by the laws of contact and friction.
 
 use crate::check::measure::errors::{Errors, worse};
+use crate::check::measure::global::largest_or_nan;
 use crate::check::measure::obstacles::MeasuredFrame;
-use crate::check::measure::vector::{MeasuredVector, angle};
+use crate::check::measure::vector::{MeasuredVector, angle, padded};
 use crate::result::increment::{ContactState, Status};
 
 /// A traction within this fraction of `μ r_n` of the friction cone counts as on the cone.
@@ -17,6 +18,8 @@ pub(super) struct Seen<'a> {
     pub motion: MeasuredVector,
     /// `-r_t/|r_t|` in space at the start of the increment, if the contact was on the friction cone there; in 3D only.
     pub direction_before: Option<MeasuredVector>,
+    /// `slip_total` of the increment before.
+    pub slipped_before: [f64; 2],
     pub dimension: usize,
 }
 
@@ -28,7 +31,11 @@ impl Seen<'_> {
         let beyond_rounding =
             |error: f64| if error.abs() <= frame.rounding { 0.0 } else { (error.abs() - frame.rounding) / length };
         let tangents = self.dimension - 1;
-        if state.tangential_reaction.len() != tangents || state.slip.len() != tangents {
+        if state.tangential_reaction.len() != tangents
+            || state.slip.len() != tangents
+            || !matches_length(&state.slip_total, tangents)
+            || !matches_length(&state.reaction, self.dimension)
+        {
             errors.reported = f64::MAX;
             return None;
         }
@@ -68,6 +75,17 @@ impl Seen<'_> {
         for k in 0..tangents {
             errors.reported = worse(errors.reported, beyond_rounding(reported[k] - moved_closed[k]));
         }
+        if !state.slip_total.is_empty() {
+            let total = pair(&state.slip_total);
+            for k in 0..tangents {
+                let sum = self.slipped_before[k] + reported[k];
+                errors.reported = worse(errors.reported, (total[k] - sum).abs() / length.max(sum.abs()));
+            }
+        }
+        if !state.reaction.is_empty() {
+            let off = padded(&state.reaction) - self::force(state, frame);
+            errors.reported = worse(errors.reported, largest_or_nan(&off) / force);
+        }
         let of_status = match state.status {
             Status::Free => size.max(normal.abs()),
             Status::Stick => slipped,
@@ -87,12 +105,23 @@ impl Seen<'_> {
     }
 }
 
+/// Whether a figure that an increment may lack has its length.
+fn matches_length(values: &[f64], length: usize) -> bool {
+    values.is_empty() || values.len() == length
+}
+
 /// `|t - P(t - x)|`, where `P` is the projection onto the disc of the given radius.
 fn natural_map(traction: [f64; 2], slip: [f64; 2], radius: f64) -> f64 {
     let moved = [traction[0] - slip[0], traction[1] - slip[1]];
     let size = moved[0].hypot(moved[1]);
     let factor = if size > radius { radius / size } else { 1.0 };
     (traction[0] - factor * moved[0]).hypot(traction[1] - factor * moved[1])
+}
+
+/// The sum of the slips up to an increment in which the contact slips.
+pub(super) fn slipped(state: &ContactState) -> Option<[f64; 2]> {
+    let component = |k: usize| state.slip_total.get(k).copied().unwrap_or(0.0);
+    state.slip.iter().any(|slip| *slip != 0.0).then(|| [component(0), component(1)])
 }
 
 /// The total force of an obstacle on its node.

@@ -33,6 +33,8 @@ pub(super) struct ElementResponse {
     pub second: usize,
     /// The force at the second node.
     pub force: MeasuredVector,
+    /// Of a bar: force along the deformed axis, tension positive.
+    pub axial: Option<f64>,
     pub energy: f64,
     /// Rounding error of the force due to the displacements.
     pub rounding: f64,
@@ -47,7 +49,7 @@ impl MeasuredElement {
     pub fn new(model: &Model, posted: &Posted) -> Option<Self> {
         let index = |name: &String| model.nodes.get_index_of(name);
         match posted {
-            Posted::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
+            Posted::Bar { nodes, axial_stiffness, rest_length, prestress, strain, name: _ } => {
                 let ends = [index(nodes.first()?)?, index(nodes.get(1)?)?];
                 let reference = padded(&model.nodes[ends[1]]) - padded(&model.nodes[ends[0]]);
                 let before = reference.norm();
@@ -55,7 +57,7 @@ impl MeasuredElement {
                 let (stiffness, prestress, strain) = (*axial_stiffness, *prestress, *strain);
                 Some(Self::Bar { ends, reference, before, rest, stiffness, prestress, strain })
             }
-            Posted::Spring { nodes, stiffness } => {
+            Posted::Spring { nodes, stiffness, name: _ } => {
                 let row = |k: usize| stiffness.get(k).map_or_else(MeasuredVector::zeros, |row| padded(row));
                 let other = nodes.get(1).map(|name| index(name).ok_or(())).transpose().ok()?;
                 Some(Self::Spring { node: index(nodes.first()?)?, other, stiffness: [row(0), row(1), row(2)] })
@@ -95,13 +97,14 @@ impl MeasuredElement {
                         (logarithmic, logarithmic / stretch)
                     }
                 };
-                let force = deformed * ((stiffness * elastic + prestress) / length);
+                let axial = stiffness * elastic + prestress;
+                let force = deformed * (axial / length);
                 let energy = 0.5 * stiffness * rest * measure * measure + prestress * elongation;
                 // The tangent stiffness for Green strain grows with the square of the stretch.
                 let tangent = stiffness / rest * stretch.max(1.0).powi(2);
                 let moved = largest(&u[ends[0]]).max(largest(&u[ends[1]]));
                 let rounding = ROUNDINGS * f64::EPSILON * tangent * moved;
-                ElementResponse { first: Some(ends[0]), second: ends[1], force, energy, rounding }
+                ElementResponse { first: Some(ends[0]), second: ends[1], force, axial: Some(axial), energy, rounding }
             }
             Self::Spring { node, other, stiffness } => {
                 let relative = match other {
@@ -113,7 +116,8 @@ impl MeasuredElement {
                 let most = stiffness.iter().map(row).fold(0.0, f64::max);
                 let moved = largest(&u[*node]).max(other.map_or(0.0, |other| largest(&u[other])));
                 let rounding = ROUNDINGS * f64::EPSILON * most * moved;
-                ElementResponse { first: *other, second: *node, force, energy: 0.5 * force.dot(&relative), rounding }
+                let energy = 0.5 * force.dot(&relative);
+                ElementResponse { first: *other, second: *node, force, axial: None, energy, rounding }
             }
         }
     }

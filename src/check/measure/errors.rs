@@ -21,8 +21,12 @@ pub struct Errors {
     pub friction: f64,
     /// Traction beyond the friction cone over the largest force so far.
     pub cone: f64,
-    /// Gaps, slips and statuses as reported against those of the displacements and reactions.
+    /// Gaps, slips, statuses and forces as reported against those of the displacements and reactions.
     pub reported: f64,
+    /// Sum of the forces, and of their moments, that supports, loads, contacts and springs exert on the bars: largest
+    /// component over the largest force so far, moments also over the extent of the structure.
+    #[serde(default)]
+    pub global_equilibrium: f64,
     /// The chord of the increment in the scaled norm against `step`, and `arc_length` against the sum of the steps.
     pub arc_length: f64,
     /// `|external work - strain - dissipated|` over the largest energy so far.
@@ -35,7 +39,7 @@ pub struct Errors {
 }
 
 /// Number of errors of an increment.
-const FIGURES: usize = 10;
+const FIGURES: usize = 11;
 
 impl Errors {
     /// The names of the errors, as in the results.
@@ -46,6 +50,7 @@ impl Errors {
         "friction",
         "cone",
         "reported",
+        "global_equilibrium",
         "arc_length",
         "energy",
         "strain_energy",
@@ -61,6 +66,7 @@ impl Errors {
             self.friction,
             self.cone,
             self.reported,
+            self.global_equilibrium,
             self.arc_length,
             self.energy,
             self.strain_energy,
@@ -68,10 +74,10 @@ impl Errors {
         ]
     }
 
-    /// The largest error of equilibrium, support, contact, friction, cone, reported and arc length: the conditions that
-    /// a point of the path must satisfy for any step.
+    /// The largest error of equilibrium, support, contact, friction, cone, reported, global equilibrium and arc length: the
+    /// conditions that a point of the path must satisfy for any step.
     pub fn largest_of_state(&self) -> f64 {
-        self.values()[..7].iter().copied().fold(0.0, worse)
+        self.values()[..8].iter().copied().fold(0.0, worse)
     }
 }
 
@@ -102,6 +108,8 @@ pub struct Maxima {
     pub friction: Largest,
     pub cone: Largest,
     pub reported: Largest,
+    #[serde(default)]
+    pub global_equilibrium: Largest,
     pub arc_length: Largest,
     pub energy: Largest,
     pub strain_energy: Largest,
@@ -118,6 +126,7 @@ impl Maxima {
             &mut self.friction,
             &mut self.cone,
             &mut self.reported,
+            &mut self.global_equilibrium,
             &mut self.arc_length,
             &mut self.energy,
             &mut self.strain_energy,

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The version of the format. The version changes when the meaning of the data changes.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// The data of the previous point that the check of the next increment needs.
 #[derive(Debug, Clone)]
@@ -17,6 +17,8 @@ pub(super) struct PreviousPoint {
     pub shifts: Vec<MeasuredVector>,
     /// `-r_t/|r_t|` in space of the contacts that are on their friction cones; in 3D only.
     pub directions: BTreeMap<usize, MeasuredVector>,
+    /// `slip_total` of the contacts that have slipped.
+    pub slips: BTreeMap<usize, [f64; 2]>,
     /// Load factor in the current stage.
     pub load: f64,
     pub arc_length: f64,
@@ -28,6 +30,7 @@ impl PreviousPoint {
             displacements: vec![MeasuredVector::zeros(); posted.nodes.len()],
             shifts: vec![MeasuredVector::zeros(); posted.moving],
             directions: BTreeMap::new(),
+            slips: BTreeMap::new(),
             load: 0.0,
             arc_length: 0.0,
         }
@@ -48,6 +51,8 @@ pub struct JudgeHistory {
     displacements: Vec<MeasuredVector>,
     /// The contacts with a direction of slip, in order, and their directions.
     directions: Vec<(usize, MeasuredVector)>,
+    /// The contacts that have slipped, in order, and the sums of their slips.
+    slips: Vec<(usize, [f64; 2])>,
     largest_force: f64,
     largest_energy: f64,
 }
@@ -69,6 +74,7 @@ pub fn history_of(judge: &Judge) -> JudgeHistory {
         arc_length: judge.before.arc_length,
         displacements: judge.before.displacements.clone(),
         directions: judge.before.directions.iter().map(|(contact, direction)| (*contact, *direction)).collect(),
+        slips: judge.before.slips.iter().map(|(contact, slip)| (*contact, *slip)).collect(),
         largest_force: judge.largest_force,
         largest_energy: judge.largest_energy,
     }
@@ -79,8 +85,17 @@ pub fn history_of(judge: &Judge) -> JudgeHistory {
 /// # Errors
 /// The history belongs to another model or has another version.
 pub fn take_up(mut judge: Judge, history: JudgeHistory) -> Result<Judge, HistoryError> {
-    let JudgeHistory { version, reached, load, arc_length, displacements, directions, largest_force, largest_energy } =
-        history;
+    let JudgeHistory {
+        version,
+        reached,
+        load,
+        arc_length,
+        displacements,
+        directions,
+        slips,
+        largest_force,
+        largest_energy,
+    } = history;
     if version != VERSION {
         return Err(HistoryError::Version { found: version });
     }
@@ -89,6 +104,7 @@ pub fn take_up(mut judge: Judge, history: JudgeHistory) -> Result<Judge, History
     for (what, found, expected) in [
         ("nodes", displacements.len(), posted.nodes.len()),
         ("contacts", directions.iter().fold(contacts, |most, (contact, _)| most.max(contact + 1)), contacts),
+        ("contacts", slips.iter().fold(contacts, |most, (contact, _)| most.max(contact + 1)), contacts),
         ("finished stages", reached.len(), reached.len().min(posted.stages.len().saturating_sub(1))),
     ] {
         if found != expected {
@@ -113,6 +129,7 @@ pub fn take_up(mut judge: Judge, history: JudgeHistory) -> Result<Judge, History
         ..PreviousPoint::at_rest(posted)
     };
     before.directions.extend(directions);
+    before.slips.extend(slips);
     judge.before = before;
     judge.apart.begin(&judge.posted, &loading, &judge.before.displacements);
     judge.largest_force = largest_force;

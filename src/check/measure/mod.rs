@@ -8,8 +8,11 @@
 //! friction        max |t - P(t - x)|,   t = r_t/F,   x = Tᵀ(Δu - Δd)/ℓ        natural map of Coulomb's law;
 //!                 P: projection onto the disc of radius μ r_n/F;  d: the obstacle's translation
 //! cone            max (|r_t| - μ r_n)/F
-//! reported        |gap - g|/ℓ, |slip - Tᵀ(Δu - Δd)|/ℓ;
-//!                 free: max(|r_n|, |r_t|)/F;   stick: |x|;   slip: ||r_t| - μ r_n|/F
+//! reported        |gap - g|/ℓ, |slip - Tᵀ(Δu - Δd)|/ℓ, |slip_total - sum of slips|/ℓ;
+//!                 free: max(|r_n|, |r_t|)/F;   stick: |x|;   slip: ||r_t| - μ r_n|/F;
+//!                 |force - force of the displacements|/F of contacts in global axes, elements, loads, free components
+//!                 of supports
+//! global_equilibrium  |Σ F|/F, |Σ (x - c) × F|/(F × extent) over supports, loads, contacts and springs
 //! arc_length      |a - step| / max(1, a),  a = ‖(Δu/ℓ, Δs/σ)‖;   |arc_length - A| / max(1, A),
 //!                 A = arc_length before + step
 //! energy          |W - E - D| / largest energy so far (at least 1e-10 F ℓ)
@@ -22,6 +25,9 @@
 //! a gap or a slip, `16 ε` times `EA/L0 max(1, L/L0)²` times the largest displacement for a bar, and `16 ε` times the
 //! largest row sum of `|K|` times the largest displacement for a spring. The rounding errors of forces matter only for
 //! large motions of stiff elements.
+//!
+//! Reactions in global axes, sums of slips, forces of elements, supports and loads are judged where the increment has them;
+//! without the reactions of the supports the balance of the whole structure is not known.
 //!
 //! `ℓ` and `σ` are the displacement scale and the load scale of the plan. (Natural map: F. Facchinei, J.-S. Pang,
 //! *Finite-Dimensional Variational Inequalities and Complementarity Problems*, Springer 2003, section 1.5; of Coulomb's
@@ -40,6 +46,7 @@
 //! | `errors` | the errors and their maxima |
 //! | `posted`, `elements`, `obstacles`, `vector` | the posted model, with indices instead of names |
 //! | `contacts` | the check of one contact |
+//! | `global` | the balance of the whole structure, and the forces as reported |
 //! | `rows`, `apart` | the contacts with a row in an increment, and the contacts without a row |
 //! | `history` | the history of a judge, for checkpoints |
 
@@ -47,6 +54,7 @@ pub(crate) mod apart;
 pub(crate) mod contacts;
 pub(crate) mod elements;
 pub(crate) mod errors;
+pub(crate) mod global;
 pub(crate) mod history;
 pub(crate) mod obstacles;
 pub(crate) mod posted;
@@ -60,8 +68,9 @@ use crate::model::JobRequest;
 use crate::result::increment::Increment;
 use apart::Apart;
 use contacts::Seen;
-use elements::MeasuredElement;
+use elements::{ElementResponse, MeasuredElement};
 use errors::worse;
+use global::Balance;
 use history::PreviousPoint;
 use obstacles::MeasuredFrame;
 use posted::{Posted, PostedLoading};
@@ -104,6 +113,8 @@ struct Workspace {
     /// Rounding error of the unbalanced force.
     rounding: Vec<f64>,
     frames: Vec<MeasuredFrame>,
+    /// Of the elements whose forces the increment reports, in order.
+    responses: Vec<ElementResponse>,
 }
 
 impl Judge {
@@ -133,7 +144,7 @@ impl Judge {
             initial_strain,
             rows: ContactRows::new(request),
             apart,
-            work: Workspace { loading: none, displacements, balance, rounding, frames },
+            work: Workspace { loading: none, displacements, balance, rounding, frames, responses: Vec::new() },
             posted,
         }
     }
@@ -144,9 +155,10 @@ impl Judge {
         if !self.read(increment) {
             errors.reported = f64::MAX;
         }
-        let strain = self.forces(increment);
+        let (strain, mut balance) = self.forces(increment);
         let force = self.largest_force.max(self.no_force);
         errors.equilibrium = worse(0.0, self.unbalanced() / force);
+        self.reported_forces(increment, force, &mut balance, &mut errors);
         errors.support = self.off_support();
         let distance = self.distance(increment);
         // The rounding error of a step grows with the length of the step.
@@ -165,12 +177,16 @@ impl Judge {
                 friction: contact.friction,
                 motion: moved - shifted,
                 direction_before: self.before.directions.get(index).copied(),
+                slipped_before: self.before.slips.get(index).copied().unwrap_or_default(),
                 dimension: self.posted.dimension,
             };
             match seen.judge(self.length, force, &mut errors) {
                 Some(direction) => self.before.directions.insert(*index, direction),
                 None => self.before.directions.remove(index),
             };
+            if let Some(total) = contacts::slipped(state) {
+                self.before.slips.insert(*index, total);
+            }
         }
         self.apart.judge(&self.posted, &self.work.loading, &self.work.displacements, distance, &mut errors);
         self.energy(increment, strain, &mut errors);
@@ -209,18 +225,36 @@ impl Judge {
         fits
     }
 
-    /// Sums the forces on every node; returns the strain energy.
-    fn forces(&mut self, increment: &Increment) -> f64 {
+    /// Sums the forces on every node; returns the strain energy, and the forces from outside on the whole structure,
+    /// those of the supports apart.
+    fn forces(&mut self, increment: &Increment) -> (f64, Balance) {
         let (posted, work) = (&self.posted, &mut self.work);
         let mut most = self.largest_force;
+        let mut outside = Balance::default();
         work.rounding.fill(0.0);
-        for (balance, load) in work.balance.iter_mut().zip(&work.loading.forces) {
+        work.responses.clear();
+        for (node, (balance, load)) in work.balance.iter_mut().zip(&work.loading.forces).enumerate() {
             *balance = -load;
             most = most.max(largest(load));
+            outside.add(posted, node, &work.displacements[node], load);
         }
         let mut strain = 0.0;
-        for element in &posted.elements {
+        let mut recorded = increment.elements.iter().peekable();
+        for (index, element) in posted.elements.iter().enumerate() {
             let response = element.response(&work.displacements);
+            if recorded.next_if(|state| state.element == index as u64).is_some() {
+                work.responses.push(response);
+            }
+            match response.axial {
+                Some(_) => outside.between(&response.force),
+                None => {
+                    let (first, second) = (response.first, response.second);
+                    outside.add(posted, second, &work.displacements[second], &-response.force);
+                    if let Some(first) = first {
+                        outside.add(posted, first, &work.displacements[first], &response.force);
+                    }
+                }
+            }
             strain += response.energy;
             most = most.max(largest(&response.force));
             if let Some(first) = response.first {
@@ -235,14 +269,43 @@ impl Judge {
         for (contact, state) in rows.zip(&increment.contacts) {
             let frame = posted.frame(contact, &work.loading, &work.displacements);
             work.frames.push(frame);
-            work.balance[contact.node] -= contacts::force(state, &frame);
+            let force = contacts::force(state, &frame);
+            work.balance[contact.node] -= force;
+            outside.add(posted, contact.node, &work.displacements[contact.node], &force);
             most = most.max(state.normal_reaction.abs());
         }
         // A force that is not finite already gives an unbounded error; the scale of the other errors stays finite.
         if most.is_finite() {
             self.largest_force = most;
         }
-        strain
+        (strain, outside)
+    }
+
+    /// The forces that the increment reports, and with the reactions of its supports the balance of the whole structure.
+    fn reported_forces(&self, increment: &Increment, force: f64, balance: &mut Balance, errors: &mut Errors) {
+        let (posted, work) = (&self.posted, &self.work);
+        if work.responses.len() != increment.elements.len() {
+            errors.reported = f64::MAX;
+        }
+        for (state, response) in increment.elements.iter().zip(&work.responses) {
+            global::judge_element(state, response, posted.dimension, force, errors);
+        }
+        global::judge_loads(increment, &work.loading, posted.dimension, force, errors);
+        if increment.supports.is_empty() && !posted.supports.is_empty() {
+            return;
+        }
+        let Some(reactions) = global::reactions(posted, increment) else {
+            errors.reported = f64::MAX;
+            return;
+        };
+        for (node, reaction) in reactions {
+            balance.add(posted, node, &work.displacements[node], &reaction);
+            let held = posted.nodes[node].held;
+            let along_free = (0..posted.dimension).filter(|k| !held[*k]).map(|k| reaction[k].abs());
+            errors.reported = worse(errors.reported, along_free.fold(0.0, worse) / force);
+        }
+        let rounding = work.rounding.iter().sum();
+        errors.global_equilibrium = worse(0.0, balance.error(posted, self.length, force, rounding));
     }
 
     /// The largest unbalanced force on a free component.

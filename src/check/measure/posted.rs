@@ -2,7 +2,7 @@
 
 use crate::check::measure::elements::MeasuredElement;
 use crate::check::measure::obstacles::{MeasuredFrame, MeasuredObstacle};
-use crate::check::measure::vector::{MeasuredVector, padded};
+use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::model::request::JobRequest;
 use indexmap::{IndexMap, IndexSet};
 
@@ -10,6 +10,12 @@ use indexmap::{IndexMap, IndexSet};
 pub(super) struct Posted {
     pub dimension: usize,
     pub nodes: Vec<PostedNode>,
+    /// The nodes with supports, in the order of the model's supports.
+    pub supports: Vec<usize>,
+    /// Centre of the box around the nodes, half its diagonal, and the largest coordinate.
+    pub centre: MeasuredVector,
+    pub extent: f64,
+    pub reach: f64,
     pub elements: Vec<MeasuredElement>,
     pub obstacles: Vec<MeasuredObstacle>,
     pub contacts: Vec<PostedContact>,
@@ -82,9 +88,17 @@ impl Posted {
             motions: pattern(&stage.obstacle_motion, &|name| moving.get_index_of(name)),
             load_scale,
         };
+        let nodes: Vec<PostedNode> = model.nodes.iter().map(node).collect();
+        let first = nodes.first().map_or_else(MeasuredVector::zeros, |node| node.place);
+        let (least, most) =
+            nodes.iter().fold((first, first), |(least, most), node| (least.inf(&node.place), most.sup(&node.place)));
         Self {
             dimension: model.dimension,
-            nodes: model.nodes.iter().map(node).collect(),
+            supports: model.supports.keys().filter_map(|name| model.nodes.get_index_of(name)).collect(),
+            centre: (least + most) * 0.5,
+            extent: (most - least).norm() * 0.5,
+            reach: largest(&least).max(largest(&most)),
+            nodes,
             elements: model.elements.iter().filter_map(|element| MeasuredElement::new(model, element)).collect(),
             obstacles: model.obstacles.values().map(MeasuredObstacle::new).collect(),
             contacts: model.contacts.iter().filter_map(contact).collect(),

@@ -67,6 +67,7 @@ impl Make {
             rest_length: None,
             prestress: 0.0,
             strain: Strain::Engineering,
+            name: None,
         });
         self
     }
@@ -86,6 +87,7 @@ impl Make {
         self.0.model.elements.push(Element::Spring {
             nodes: nodes.iter().map(|node| (*node).to_owned()).collect(),
             stiffness: stiffness.iter().map(|row| row.to_vec()).collect(),
+            name: None,
         });
         self
     }

@@ -15,7 +15,7 @@ use crate::resources::cancel::CancelFlag;
 use serde::{Deserialize, Serialize};
 
 /// Increased whenever an earlier checkpoint would be misread.
-const VERSION: u32 = 9;
+const VERSION: u32 = 10;
 
 /// A path at one of its points.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -8,11 +8,12 @@
 //! | `visited_states` | states that the path has left, to detect a cycle |
 //! | `simultaneous_change_backoff` | waiting time before contact changes are treated together again |
 //! | `totals` | sums and maxima along the path |
-//! | `row_conversion`, `event_descriptions` | the row of a point in the user's units and names; descriptions of events |
+//! | `row_conversion`, `force_rows`, `event_descriptions` | the row of a point in the user's units and names; its forces; descriptions of events |
 //! | `step_factor_rounding`, `tolerances` | step lengths in eighths of an octave; tolerances for coincident states |
 
 pub(crate) mod contact_search;
 pub(crate) mod event_descriptions;
+pub(crate) mod force_rows;
 pub(crate) mod path_context;
 pub(crate) mod resumable_state;
 pub(crate) mod row_conversion;

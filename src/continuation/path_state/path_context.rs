@@ -179,7 +179,7 @@ impl<'a> PathTrace<'a> {
             mode_named: emitted.mode_named,
         };
         let row = row_conversion::increment(self.scene, &self.at.totals, &row);
-        self.at.totals.note(&row);
+        self.at.totals.note(&row, self.near.rows());
         self.at.listed = row.directions.is_some().then_some(Listed {
             options: emitted.options,
             taken: emitted.taken,

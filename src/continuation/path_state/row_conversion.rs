@@ -1,13 +1,14 @@
 //! Conversion of a dimensionless point to a row in the user's units and names.
 
 use crate::branching::directions::feasible_direction::{DirectionChoice, is_worth_listing};
+use crate::continuation::path_state::force_rows;
 use crate::continuation::path_state::totals::Totals;
 use crate::continuation::scene::{Reported, Scene};
-use crate::mechanics::contact::vector::{add, dot};
-use crate::mechanics::contact::{Mode, tangents_in_space};
+use crate::mechanics::contact::vector::{add, dot, scaled};
+use crate::mechanics::contact::{Mode, Reaction, tangents_in_space};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::natural_residual;
-use crate::mechanics::problem::node_contact_forces::free_directions;
+use crate::mechanics::problem::node_contact_forces::{self, free_directions};
 use crate::mechanics::problem::state::State;
 use crate::mechanics::problem::tolerances::CONTACT_TOLERANCE;
 use crate::result::increment::{ContactState, Diagnostics, Direction, Energy, Increment, Point, Status};
@@ -55,7 +56,7 @@ pub(crate) fn increment(scene: &Scene, totals: &Totals, row: &RowSource<'_>) -> 
     let energy_unit = length * force;
     let stage = &scene.stages[row.stage];
     let displacements = scene.no_displacements.scaled(&scene.structure.translations(&row.state.displacement), length);
-    let (contacts, complementarity) = contact_rows(scene, row, totals.force_scale);
+    let (contacts, complementarity) = contact_rows(scene, row, totals);
     let directions = is_worth_listing(row.options).then(|| {
         let direction = |(index, option): (usize, &DirectionChoice)| Direction {
             contacts: reported(scene, row)
@@ -77,6 +78,9 @@ pub(crate) fn increment(scene: &Scene, totals: &Totals, row: &RowSource<'_>) -> 
         step: row.step,
         displacements,
         contacts,
+        elements: force_rows::element_rows(scene, row),
+        supports: force_rows::support_reactions(scene, row),
+        applied_forces: force_rows::applied_forces(scene, row),
         point: row.point.clone(),
         directions,
         energy: Energy {
@@ -110,13 +114,13 @@ fn reported<'a>(scene: &'a Scene, row: &RowSource<'a>) -> impl Iterator<Item = &
 }
 
 /// Contact rows in the user's units, and the largest violation of contact and friction (dimensionless).
-fn contact_rows(scene: &Scene, row: &RowSource<'_>, force_scale: f64) -> (Vec<ContactState>, f64) {
+fn contact_rows(scene: &Scene, row: &RowSource<'_>, totals: &Totals) -> (Vec<ContactState>, f64) {
     let plan = scene.plan();
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let dimension = scene.structure.dimension;
     let mut rows = Vec::with_capacity(row.rows.len());
     let loading = row.loading;
-    for one in reported(scene, row) {
+    for (one, place) in reported(scene, row).zip(row.rows) {
         let frame = row.whole.frame(one.contact, row.state);
         let mut contact = ContactState {
             node: Arc::clone(&one.node),
@@ -125,7 +129,9 @@ fn contact_rows(scene: &Scene, row: &RowSource<'_>, force_scale: f64) -> (Vec<Co
             gap: frame.gap * length,
             normal_reaction: 0.0,
             tangential_reaction: smallvec![0.0; dimension - 1],
+            reaction: smallvec![0.0; dimension],
             slip: smallvec![0.0; dimension - 1],
+            slip_total: totals.slip_of(*place, dimension - 1),
             indeterminate: false,
         };
         if let Some(index) = row.places[one.contact] {
@@ -152,16 +158,23 @@ fn contact_rows(scene: &Scene, row: &RowSource<'_>, force_scale: f64) -> (Vec<Co
             for (value, tangent) in contact.tangential_reaction.iter_mut().zip(&tangents) {
                 *value = dot(&reaction.tangential, tangent) * one.tangential_share * force;
             }
+            let shared = Reaction {
+                normal: reaction.normal * one.normal_share,
+                tangential: scaled(&reaction.tangential, one.tangential_share),
+            };
+            let in_space = node_contact_forces::force(&frame, &shared);
+            contact.reaction.iter_mut().zip(in_space).for_each(|(value, component)| *value = component * force);
             if is_active {
                 for (value, tangent) in contact.slip.iter_mut().zip(&tangents) {
                     *value = dot(&moved, tangent) * length;
                 }
+                contact.slip_total.iter_mut().zip(&contact.slip).for_each(|(total, slip)| *total += slip);
                 contact.indeterminate = one.shared || held_by_too_many(loading, row.modes, index);
             }
         }
         rows.push(contact);
     }
-    (rows, natural_residual::violation(loading, row.state, force_scale))
+    (rows, natural_residual::violation(loading, row.state, totals.force_scale))
 }
 
 /// Whether a contact and others at its node have reactions that equilibrium does not determine.

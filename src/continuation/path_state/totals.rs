@@ -2,11 +2,13 @@
 
 use crate::continuation::path_state::tolerances::ENERGY_ROUND_OFF;
 use crate::resources::budget::Breach;
-use crate::result::increment::{Energy, Increment};
+use crate::result::increment::{Energy, Increment, Tangential};
 use crate::result::report::Report;
 use crate::result::stop_reason::StopReason;
 use crate::step::corrector::cost_counters::Work;
 use serde::{Deserialize, Serialize};
+use smallvec::smallvec;
+use std::collections::BTreeMap;
 
 /// Sums and maxima from the start of the path, dimensionless.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -24,6 +26,9 @@ pub(crate) struct Totals {
     /// Relaxation at the end of the last program solved.
     #[serde(default)]
     pub last_relaxation: Option<f64>,
+    /// Sums of the slips of the request's contacts that have slipped, by their place in the request; in the user's units,
+    /// as increments report them.
+    pub slips: BTreeMap<usize, Tangential>,
     pub report: Report,
 }
 
@@ -49,6 +54,7 @@ impl Totals {
             force_scale: 0.0,
             work: Work::default(),
             last_relaxation: None,
+            slips: BTreeMap::new(),
             report: Report::begun(),
         }
     }
@@ -73,8 +79,18 @@ impl Totals {
         if size > 0.0 { imbalance / size } else { 0.0 }
     }
 
-    /// Enters an emitted row into the report.
-    pub fn note(&mut self, row: &Increment) {
+    /// The sum of the slips of a contact of the request, with so many components.
+    pub fn slip_of(&self, contact: usize, tangents: usize) -> Tangential {
+        self.slips.get(&contact).cloned().unwrap_or_else(|| smallvec![0.0; tangents])
+    }
+
+    /// Enters an emitted row into the report and the sums; `contacts`: places in the request of the contacts in the row.
+    pub fn note(&mut self, row: &Increment, contacts: &[usize]) {
+        for (state, place) in row.contacts.iter().zip(contacts) {
+            if state.slip.iter().any(|slip| *slip != 0.0) {
+                self.slips.insert(*place, state.slip_total.clone());
+            }
+        }
         let (report, diagnostics) = (&mut self.report, &row.diagnostics);
         report.increments = row.index;
         report.largest_residual = report.largest_residual.max(diagnostics.residual);

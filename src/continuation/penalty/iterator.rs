@@ -216,7 +216,7 @@ impl<'a> RegularisedPath<'a> {
             mode_named: None,
         };
         let row = row_conversion::increment(self.scene, &self.totals, &row);
-        self.totals.note(&row);
+        self.totals.note(&row, &rows);
         row
     }
 }

@@ -44,7 +44,7 @@ pub(super) fn build_structure(
     let mut elements = ElementList::default();
     for element in &model.elements {
         match element {
-            request::Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
+            request::Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain, name: _ } => {
                 let nodes = [numbers[nodes[0].as_str()], numbers[nodes[1].as_str()]];
                 let mut vector = [0.0; 3];
                 // A difference of the places as given: a place far from the origin causes no loss of digits.
@@ -60,7 +60,7 @@ pub(super) fn build_structure(
                     strain: *strain,
                 });
             }
-            request::Element::Spring { nodes, stiffness } => {
+            request::Element::Spring { nodes, stiffness, name: _ } => {
                 let mut matrix = [[0.0; 3]; 3];
                 for (row, values) in stiffness.iter().enumerate() {
                     for (column, value) in values.iter().enumerate() {

@@ -15,6 +15,7 @@ pub(crate) mod build;
 pub(crate) mod characteristic_stiffness;
 pub(crate) mod omitted_features;
 pub(crate) mod recorded_contacts;
+pub(crate) mod recorded_forces;
 pub(crate) mod requested_contacts;
 pub(crate) mod scales;
 pub(crate) mod stage_load;
@@ -27,9 +28,10 @@ use crate::mechanics::structure::element_list::ElementList;
 use crate::model::request::{Analysis, JobRequest};
 use crate::model::{InputError, InputErrors};
 use crate::resources::budget::{self, Breach, Budget};
-use crate::result::displacements::Displacements;
+use crate::result::nodal_values::NodalValues;
 use crate::result::plan::Plan;
 use build::{Contacts, ScaledModel, build_contacts, build_stage, build_structure, first_contacts};
+use recorded_forces::RecordedForces;
 pub(crate) use requested_contacts::Reported;
 use scales::{RequestScales, scales};
 pub(crate) use stage_load::StageLoad;
@@ -49,7 +51,9 @@ pub struct Scene {
     /// Nodes with several contacts.
     pub(crate) corners: Vec<Corner>,
     /// Displacements without values, whose names those of each increment share.
-    pub(crate) no_displacements: Displacements,
+    pub(crate) no_displacements: NodalValues,
+    /// The elements and supports whose forces an increment has.
+    pub(crate) recorded_forces: RecordedForces,
     pub(crate) stages: Vec<StageLoad>,
     pub(crate) analysis: Analysis,
     /// Indices of the request's contacts that have a row in every increment, in reach or not; `None`: all.
@@ -164,7 +168,7 @@ impl Scene {
             load_scales: stages.iter().map(|stage| stage.load_scale).collect(),
             left_out,
         };
-        let no_displacements = Displacements::zero(model.nodes.keys().map(String::as_str), model.dimension);
+        let no_displacements = NodalValues::zero(model.nodes.keys().map(String::as_str), model.dimension);
         let analysis = request.analysis.clone();
         let asked_rows = crate::continuation::scene::recorded_contacts::asked_rows(request);
         let jumps = crate::continuation::scene::omitted_features::jumps(&analysis, &structure);
@@ -175,6 +179,7 @@ impl Scene {
             reported,
             corners,
             no_displacements,
+            recorded_forces: RecordedForces::of(request),
             stages,
             analysis,
             asked_rows,

@@ -16,9 +16,10 @@ pub mod sparsity;
 
 use assembly::{ElementAt, ElementBlock, ForceBuffer, StiffnessBuffer};
 use element_list::ElementList;
-use elements::Stretching;
+use elements::{Resultants, Stretching};
 use nalgebra::DMatrix;
 use numbering::Numbering;
+use smallvec::SmallVec;
 use sparsity::Layout;
 use std::borrow::Cow;
 use std::ops::Range;
@@ -238,6 +239,13 @@ impl Structure {
         self.blocks().fold(0.0, |largest: f64, block| {
             largest.max(block.each_force(displacement, &mut buffer, |freedom, value| force[freedom] += value))
         })
+    }
+
+    /// The force that an element carries, by the element's place in the input.
+    pub fn resultants(&self, element: usize, displacement: &[f64]) -> Option<Resultants> {
+        let at = self.element(element);
+        let own: SmallVec<[f64; 12]> = at.freedoms.iter().map(|freedom| displacement[*freedom]).collect();
+        at.element.resultants(&own)
     }
 
     /// A bound on the rounding of the displacements in `f_int(u)`, one value per degree of freedom: stiffness times

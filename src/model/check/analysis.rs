@@ -7,8 +7,12 @@ use crate::model::input::limits::{
 };
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{quoted, suggestion};
-use crate::model::request::{Analysis, ArcLength, Method, Model, Record, RecordedContact, Regularised};
-use std::collections::HashSet;
+use crate::model::request::recorded_forces::element_label;
+use crate::model::request::{
+    Analysis, ArcLength, ElementReference, Method, Model, Record, RecordedContact, RecordedElements, RecordedSupports,
+    Regularised,
+};
+use std::collections::{HashMap, HashSet};
 
 pub(super) fn analysis(analysis: &Analysis, at: &DocumentPlace, mistakes: &mut Mistakes) {
     arc_length(&analysis.arc_length, &at.member("arc_length"), mistakes);
@@ -68,6 +72,8 @@ pub(super) fn recorded(record: &Record, model: &Model, at: &DocumentPlace, mista
             mistakes.add(&at, || format!("{} occurs twice", quoted(name)));
         }
     }
+    recorded_elements(record, model, at, mistakes);
+    recorded_supports(record, model, at, mistakes);
     let contacts: HashSet<(&str, &str)> =
         model.contacts.iter().map(|contact| (contact.node.as_str(), contact.obstacle.as_str())).collect();
     let mut seen = HashSet::new();
@@ -85,6 +91,53 @@ pub(super) fn recorded(record: &Record, model: &Model, at: &DocumentPlace, mista
             mistakes.add(&at, || format!("there is no contact of {} with {}", quoted(node), quoted(obstacle)));
         } else if !seen.insert(pair) {
             mistakes.add(&at, || format!("{} with {} occurs twice", quoted(node), quoted(obstacle)));
+        }
+    }
+}
+
+/// Every element that is listed is in the model, and occurs once, be it by place or by name.
+fn recorded_elements(record: &Record, model: &Model, at: &DocumentPlace, mistakes: &mut Mistakes) {
+    let Some(RecordedElements::Listed(listed)) = &record.elements else { return };
+    let named: HashMap<&str, usize> =
+        model.elements.iter().enumerate().filter_map(|(place, element)| Some((element.name()?, place))).collect();
+    let at = at.member("elements");
+    let mut seen = HashSet::new();
+    for (index, reference) in listed.iter().enumerate() {
+        let at = at.index(index);
+        let place = match reference {
+            ElementReference::Place(place) if *place < model.elements.len() as u64 => *place as usize,
+            ElementReference::Place(place) => {
+                let last = model.elements.len().saturating_sub(1);
+                mistakes.add(&at, || format!("there is no element {place}; 0 to {last} would do"));
+                continue;
+            }
+            ElementReference::Name(name) => match named.get(name.as_str()) {
+                Some(place) => *place,
+                None => {
+                    let known = || suggestion(name, model.elements.iter().filter_map(|element| element.name()));
+                    mistakes.add(&at, || format!("there is no element {}{}", quoted(name), known()));
+                    continue;
+                }
+            },
+        };
+        if !seen.insert(place) {
+            mistakes.add(&at, || format!("element {} occurs twice", element_label(model, place)));
+        }
+    }
+}
+
+/// Every node that is named has a support, and occurs once.
+fn recorded_supports(record: &Record, model: &Model, at: &DocumentPlace, mistakes: &mut Mistakes) {
+    let Some(RecordedSupports::Named(named)) = &record.supports else { return };
+    let at = at.member("supports");
+    let mut seen = HashSet::new();
+    for (index, name) in named.iter().enumerate() {
+        let at = at.index(index);
+        if !model.supports.contains_key(name) {
+            let known = || suggestion(name, model.supports.keys().map(String::as_str));
+            mistakes.add(&at, || format!("there is no support at a node {}{}", quoted(name), known()));
+        } else if !seen.insert(name) {
+            mistakes.add(&at, || format!("{} occurs twice", quoted(name)));
         }
     }
 }

@@ -6,6 +6,7 @@ use crate::model::input::limits::{COINCIDENCE_TOLERANCE, SYMMETRY_TOLERANCE};
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::quoted;
 use crate::model::request::{Component, Element};
+use std::collections::HashMap;
 
 pub(super) fn nodes(scope: &Scope, mistakes: &mut Mistakes) {
     let at = scope.at.member("nodes");
@@ -56,10 +57,20 @@ pub(super) fn component_name(component: Component) -> &'static str {
 
 pub(super) fn elements(scope: &Scope, mistakes: &mut Mistakes) {
     let at = scope.at.member("elements");
+    let mut named: HashMap<&str, usize> = HashMap::new();
     for (index, element) in scope.model.elements.iter().enumerate() {
         let at = at.index(index);
+        if let Some(name) = element.name() {
+            element_name(name, &at.member("name"), mistakes);
+            if let Some(first) = named.get(name) {
+                mistakes.add(&at.member("name"), || {
+                    format!("element {first} has the name {}, too; each name is to be given once", quoted(name))
+                });
+            }
+            named.entry(name).or_insert(index);
+        }
         match element {
-            Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain: _ } => {
+            Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain: _, name: _ } => {
                 bar_nodes(scope, nodes, &at, mistakes);
                 numbers::positive(*axial_stiffness, &at.member("axial_stiffness"), mistakes);
                 if let Some(rest_length) = *rest_length {
@@ -67,7 +78,7 @@ pub(super) fn elements(scope: &Scope, mistakes: &mut Mistakes) {
                 }
                 numbers::number(*prestress, &at.member("prestress"), mistakes);
             }
-            Element::Spring { nodes, stiffness } => {
+            Element::Spring { nodes, stiffness, name: _ } => {
                 if !matches!(nodes.len(), 1 | 2) {
                     let found = nodes.len();
                     let detail = move || format!("found {found} nodes; a spring has 1 (to the ground) or 2");
@@ -77,6 +88,17 @@ pub(super) fn elements(scope: &Scope, mistakes: &mut Mistakes) {
                 symmetric(stiffness, scope.model.dimension, &at.member("stiffness"), mistakes);
             }
         }
+    }
+}
+
+/// Digits alone are the place of an element, in results as in `analysis.record`.
+fn element_name(name: &str, at: &DocumentPlace, mistakes: &mut Mistakes) {
+    if !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_digit()) {
+        mistakes.add(at, || {
+            format!("found {}; a name with a letter is expected: digits alone are an element's place", quoted(name))
+        });
+    } else {
+        proper_name(name, at, mistakes);
     }
 }
 

@@ -3,8 +3,8 @@
 use crate::model::decode::reader::{Choices, Fields, Input, boolean, count, number, text};
 use crate::model::input::mistakes::Mistakes;
 use crate::model::request::{
-    Analysis, ArcLength, Certificate, ContactRange, Events, Explore, LoadSign, Method, Mpec, Record, RecordedContact,
-    RecordedContacts, Regularised, Selection,
+    Analysis, ArcLength, Certificate, ContactRange, ElementReference, Events, Explore, ForceRange, LoadSign, Method,
+    Mpec, Record, RecordedContact, RecordedContacts, RecordedElements, RecordedSupports, Regularised, Selection,
 };
 
 const ANALYSIS: Fields = Fields {
@@ -33,13 +33,23 @@ const ARC_LENGTH: Fields = Fields {
 
 const EXPLORE: Fields = Fields { what: "an exploration", known: &["depth", "max_jobs"], later: &[] };
 
-const RECORD: Fields = Fields { what: "a record", known: &["nodes", "contacts", "every", "directions"], later: &[] };
+const RECORD: Fields = Fields {
+    what: "a record",
+    known: &["nodes", "contacts", "elements", "supports", "every", "directions"],
+    later: &[],
+};
 
 const CONTACT_RANGE: Choices<ContactRange> = Choices {
     what: "a range of contacts",
     known: &[("all", ContactRange::All), ("in_reach", ContactRange::InReach)],
     later: &[],
 };
+const FORCE_RANGE: Choices<ForceRange> = Choices {
+    what: "a range of elements or supports",
+    known: &[("all", ForceRange::All), ("none", ForceRange::None)],
+    later: &[],
+};
+
 const RECORDED_CONTACT: Fields = Fields { what: "a recorded contact", known: &["node", "obstacle"], later: &[] };
 
 const MPEC: Fields = Fields { what: "parameters of the program", known: &["certificate"], later: &[] };
@@ -138,9 +148,18 @@ fn record(input: &Input, mistakes: &mut Mistakes) -> Option<Record> {
     let default = Record::default();
     let nodes = object.optional("nodes", mistakes, |input, mistakes| input.list(mistakes, text));
     let contacts = object.optional("contacts", mistakes, recorded_contacts);
+    let elements = object.optional("elements", mistakes, recorded_elements);
+    let supports = object.optional("supports", mistakes, recorded_supports);
     let every = object.with_default("every", default.every, mistakes, count);
     let directions = object.with_default("directions", default.directions, mistakes, boolean);
-    Some(Record { nodes: nodes?, contacts: contacts?, every: every?, directions: directions? })
+    Some(Record {
+        nodes: nodes?,
+        contacts: contacts?,
+        elements: elements?,
+        supports: supports?,
+        every: every?,
+        directions: directions?,
+    })
 }
 
 fn recorded_contacts(input: &Input, mistakes: &mut Mistakes) -> Option<RecordedContacts> {
@@ -151,6 +170,32 @@ fn recorded_contacts(input: &Input, mistakes: &mut Mistakes) -> Option<RecordedC
         return input.refuse("\"all\", \"in_reach\" or a list of contacts", mistakes);
     }
     input.list(mistakes, recorded_contact).map(RecordedContacts::Named)
+}
+
+fn recorded_elements(input: &Input, mistakes: &mut Mistakes) -> Option<RecordedElements> {
+    if input.is_text() {
+        return input.choice(&FORCE_RANGE, mistakes).map(RecordedElements::Range);
+    }
+    if !input.is_list() {
+        return input.refuse("\"all\", \"none\" or a list of places and names of elements", mistakes);
+    }
+    let element = |input: &Input, mistakes: &mut Mistakes| {
+        if input.is_text() {
+            return text(input, mistakes).map(ElementReference::Name);
+        }
+        count(input, mistakes).map(ElementReference::Place)
+    };
+    input.list(mistakes, element).map(RecordedElements::Listed)
+}
+
+fn recorded_supports(input: &Input, mistakes: &mut Mistakes) -> Option<RecordedSupports> {
+    if input.is_text() {
+        return input.choice(&FORCE_RANGE, mistakes).map(RecordedSupports::Range);
+    }
+    if !input.is_list() {
+        return input.refuse("\"all\", \"none\" or a list of supported nodes", mistakes);
+    }
+    input.list(mistakes, text).map(RecordedSupports::Named)
 }
 
 fn recorded_contact(input: &Input, mistakes: &mut Mistakes) -> Option<RecordedContact> {

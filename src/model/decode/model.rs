@@ -16,11 +16,11 @@ const MODEL: Fields = Fields {
 
 const BAR: Fields = Fields {
     what: "a bar",
-    known: &["kind", "nodes", "axial_stiffness", "rest_length", "prestress", "strain"],
+    known: &["kind", "nodes", "axial_stiffness", "rest_length", "prestress", "strain", "name"],
     later: &[],
 };
 
-const SPRING: Fields = Fields { what: "a spring", known: &["kind", "nodes", "stiffness"], later: &[] };
+const SPRING: Fields = Fields { what: "a spring", known: &["kind", "nodes", "stiffness", "name"], later: &[] };
 
 const PLANE: Fields = Fields { what: "a plane", known: &["kind", "point", "normal"], later: &[] };
 
@@ -137,12 +137,14 @@ fn bar(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
     let prestress = object.with_default("prestress", 0.0, mistakes, number);
     let strain =
         object.with_default("strain", Strain::default(), mistakes, |input, mistakes| input.choice(&STRAIN, mistakes));
+    let name = object.optional("name", mistakes, text);
     Some(Element::Bar {
         nodes: nodes?,
         axial_stiffness: axial_stiffness?,
         rest_length: rest_length?,
         prestress: prestress?,
         strain: strain?,
+        name: name?,
     })
 }
 
@@ -150,7 +152,8 @@ fn spring(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
     let object = input.object(&SPRING, mistakes)?;
     let nodes = object.required("nodes", mistakes, strings);
     let stiffness = object.required("stiffness", mistakes, |input, mistakes| input.list(mistakes, numbers));
-    Some(Element::Spring { nodes: nodes?, stiffness: stiffness? })
+    let name = object.optional("name", mistakes, text);
+    Some(Element::Spring { nodes: nodes?, stiffness: stiffness?, name: name? })
 }
 
 fn obstacle(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {

@@ -40,17 +40,18 @@ fn component() -> impl Strategy<Value = Component> {
 
 fn element() -> impl Strategy<Value = Element> {
     let strain = one_of([Strain::Engineering, Strain::Green, Strain::Log]);
-    let bar = (vec(name(), 0..3), number(), of(number()), number(), strain).prop_map(
-        |(nodes, axial_stiffness, rest_length, prestress, strain)| Element::Bar {
+    let bar = (vec(name(), 0..3), number(), of(number()), number(), strain, of(name())).prop_map(
+        |(nodes, axial_stiffness, rest_length, prestress, strain, name)| Element::Bar {
             nodes,
             axial_stiffness,
             rest_length,
             prestress,
             strain,
+            name,
         },
     );
-    let spring =
-        (vec(name(), 0..3), vec(numbers(), 0..4)).prop_map(|(nodes, stiffness)| Element::Spring { nodes, stiffness });
+    let spring = (vec(name(), 0..3), vec(numbers(), 0..4), of(name()))
+        .prop_map(|(nodes, stiffness, name)| Element::Spring { nodes, stiffness, name });
     prop_oneof![bar, spring]
 }
 
@@ -138,8 +139,25 @@ fn analysis() -> impl Strategy<Value = Analysis> {
         one_of([ContactRange::All, ContactRange::InReach]).prop_map(RecordedContacts::Range),
         vec(contact, 0..3).prop_map(RecordedContacts::Named),
     ];
-    let record = (of(vec(name(), 0..3)), of(contacts), any::<u64>(), any::<bool>())
-        .prop_map(|(nodes, contacts, every, directions)| Record { nodes, contacts, every, directions });
+    let element = prop_oneof![any::<u64>().prop_map(ElementReference::Place), name().prop_map(ElementReference::Name)];
+    let force_range = || one_of([ForceRange::All, ForceRange::None]);
+    let elements = prop_oneof![
+        force_range().prop_map(RecordedElements::Range),
+        vec(element, 0..3).prop_map(RecordedElements::Listed),
+    ];
+    let supports = prop_oneof![
+        force_range().prop_map(RecordedSupports::Range),
+        vec(name(), 0..3).prop_map(RecordedSupports::Named),
+    ];
+    let record = (of(vec(name(), 0..3)), of(contacts), of(elements), of(supports), any::<u64>(), any::<bool>())
+        .prop_map(|(nodes, contacts, elements, supports, every, directions)| Record {
+            nodes,
+            contacts,
+            elements,
+            supports,
+            every,
+            directions,
+        });
     let counts = (any::<u64>(), any::<u64>(), any::<bool>());
     let certificate = prop_oneof![Just(Certificate::Use), Just(Certificate::Skip)];
     let mpec = certificate.prop_map(|certificate| Mpec { certificate });

@@ -8,6 +8,7 @@
 
 mod analysis;
 mod record;
+pub mod recorded_forces;
 mod structure;
 pub mod study;
 pub mod sweep;
@@ -18,7 +19,10 @@ use serde::{Deserialize, Serialize};
 pub use crate::branching::directions::feasible_direction::Selection;
 pub use crate::mechanics::structure::elements::bar::Strain;
 pub use analysis::{Analysis, ArcLength, Certificate, Events, Explore, LoadSign, Method, Mpec, Regularised};
-pub use record::{ContactRange, Record, RecordedContact, RecordedContacts};
+pub use record::{
+    ContactRange, ElementReference, ForceRange, Record, RecordedContact, RecordedContacts, RecordedElements,
+    RecordedSupports,
+};
 pub use structure::{Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Until};
 
 /// A model and how to trace it.

@@ -15,6 +15,12 @@ pub struct Record {
     /// but in models of more than 100 contacts those within reach.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contacts: Option<RecordedContacts>,
+    /// Elements whose forces are kept, by place or name; absent: all in models of up to 200 elements, else none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elements: Option<RecordedElements>,
+    /// Supported nodes whose reactions are kept; absent: all where there are up to 200, else none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub supports: Option<RecordedSupports>,
     /// Of the regular increments, those whose index is a multiple of this are kept; 1 or more. Kept in any case: starts
     /// and ends of the path and of its stages, contact changes, limit and bifurcation points at which something happens,
     /// increments at which another direction first appears, and those off the measure.
@@ -43,6 +49,41 @@ pub enum ContactRange {
     InReach,
 }
 
+/// Which elements have forces in the increments: `all`, `none`, or the ones that are listed.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(untagged)]
+pub enum RecordedElements {
+    Range(ForceRange),
+    Listed(Vec<ElementReference>),
+}
+
+/// Which supported nodes have reactions in the increments: `all`, `none`, or the ones that are named.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(untagged)]
+pub enum RecordedSupports {
+    Range(ForceRange),
+    Named(Vec<String>),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum ForceRange {
+    All,
+    None,
+}
+
+/// An element, by its place in the model's `elements`, from 0, or by its name.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(untagged)]
+pub enum ElementReference {
+    Place(u64),
+    Name(String),
+}
+
 /// A contact, by the names in the model; contacts listed twice there are meant together.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
@@ -64,6 +105,6 @@ impl Record {
 
 impl Default for Record {
     fn default() -> Self {
-        Self { nodes: None, contacts: None, every: 1, directions: true }
+        Self { nodes: None, contacts: None, elements: None, supports: None, every: 1, directions: true }
     }
 }

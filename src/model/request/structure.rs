@@ -70,6 +70,9 @@ pub enum Element {
         prestress: f64,
         #[serde(default)]
         strain: Strain,
+        /// By which results and `analysis.record` refer to the element; one element has it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        name: Option<String>,
     },
     /// A constant stiffness between one node and the ground, or between two nodes; it does not follow rotation.
     Spring {
@@ -79,7 +82,18 @@ pub enum Element {
         /// Symmetric, `dimension` rows of `dimension` numbers (force per length).
         #[cfg_attr(feature = "server", schema(min_items = 2, max_items = 3))]
         stiffness: Vec<Vec<f64>>,
+        /// By which results and `analysis.record` refer to the element; one element has it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        name: Option<String>,
     },
+}
+
+impl Element {
+    /// The name by which results refer to the element, where it has one.
+    pub fn name(&self) -> Option<&str> {
+        let (Self::Bar { name, .. } | Self::Spring { name, .. }) = self;
+        name.as_deref()
+    }
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -15,7 +15,8 @@ pub(super) struct SingleBar<'a> {
 
 /// The bar of a model with two nodes and one bar between the nodes.
 pub(super) fn one_bar(model: &Model) -> Option<SingleBar<'_>> {
-    let [Element::Bar { nodes, axial_stiffness, rest_length: None, prestress, strain }] = &model.elements[..] else {
+    let [Element::Bar { nodes, axial_stiffness, rest_length: None, prestress, strain, .. }] = &model.elements[..]
+    else {
         return None;
     };
     if model.nodes.len() != 2 || *prestress != 0.0 {
@@ -28,7 +29,7 @@ pub(super) fn one_bar(model: &Model) -> Option<SingleBar<'_>> {
 
 /// The only node of a model, and the stiffness matrix of the only spring, which connects the node to the ground.
 pub(super) fn one_spring(model: &Model) -> Option<(&str, &[Vec<f64>])> {
-    let [Element::Spring { nodes, stiffness }] = &model.elements[..] else { return None };
+    let [Element::Spring { nodes, stiffness, .. }] = &model.elements[..] else { return None };
     let ([node], 1) = (&nodes[..], model.nodes.len()) else { return None };
     is_free(model, node).then_some((node, stiffness))
 }

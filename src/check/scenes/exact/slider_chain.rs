@@ -52,7 +52,7 @@ impl SliderChain {
         }
         let mut stiffness = Vec::with_capacity(model.elements.len());
         for (element, ends) in model.elements.iter().zip(blocks.windows(2)) {
-            let Element::Spring { nodes, stiffness: matrix } = element else { return None };
+            let Element::Spring { nodes, stiffness: matrix, .. } = element else { return None };
             let [first, second] = &nodes[..] else { return None };
             let along = matrix[0][0] > 0.0 && [matrix[0][1], matrix[1][0], matrix[1][1]] == [0.0; 3];
             if !along || first != ends[0] || second != ends[1] {

@@ -26,7 +26,7 @@ impl VonMisesScene {
     pub fn recognise(model: &Model) -> Option<Self> {
         let [first, second] = &model.elements[..] else { return None };
         let bar = |element: &Element| match element {
-            Element::Bar { nodes, axial_stiffness, rest_length: None, prestress, strain } if *prestress == 0.0 => {
+            Element::Bar { nodes, axial_stiffness, rest_length: None, prestress, strain, .. } if *prestress == 0.0 => {
                 Some((nodes.clone(), *axial_stiffness, *strain))
             }
             _ => None,

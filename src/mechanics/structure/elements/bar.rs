@@ -11,7 +11,7 @@
 //! `N = ∂W/∂L` is the axial force in the deformed direction `d`; the tangent is `N' d dᵀ + (N/L)(I - d dᵀ)`.
 //! (Crisfield, *Non-linear Finite Element Analysis of Solids and Structures* 1, Wiley 1991, chapter 3.)
 
-use crate::mechanics::structure::elements::{FiniteElement, Stretching};
+use crate::mechanics::structure::elements::{FiniteElement, Resultants, Stretching};
 use serde::{Deserialize, Serialize};
 
 #[derive(Debug, Clone)]
@@ -140,6 +140,11 @@ impl FiniteElement for Bar {
             end.iter_mut().zip(&deformed.direction).for_each(|(force, direction)| *force = sign * (axial * direction));
         }
         axial.abs()
+    }
+
+    fn resultants(&self, displacement: &[f64]) -> Option<Resultants> {
+        let (_, axial, _) = self.response(self.deformed(displacement).elongation);
+        Some(Resultants::Axial(axial))
     }
 
     #[inline(always)]

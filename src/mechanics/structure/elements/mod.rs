@@ -52,10 +52,25 @@ pub trait FiniteElement: Debug + Send + Sync {
         self.write_stiffness(displacement, stiffness);
     }
 
+    /// The force that the element carries, as results report it; `None` where nothing is reported of its kind.
+    fn resultants(&self, _displacement: &[f64]) -> Option<Resultants> {
+        None
+    }
+
     /// The stretch `L/L0` of an element that may shrink to a point, where its forces lose their direction.
     fn stretch(&self, _displacement: &[f64]) -> Option<f64> {
         None
     }
+}
+
+/// The force that an element carries.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Resultants {
+    /// Along the deformed axis of a bar, tension positive.
+    Axial(f64),
+    /// Of a spring on its first node's displacement relative to the second, or to the ground, in global axes; in 2D the
+    /// third component is 0.
+    Force([f64; 3]),
 }
 
 /// A summand `k c cᵀ` of the tangent: the stiffness `k` against motions along `c`.

@@ -1,7 +1,7 @@
 //! A constant symmetric stiffness matrix between a node and the ground, or between two nodes: `f = K Δu`,
 //! `W = ½ Δuᵀ K Δu`. The spring does not follow rotations.
 
-use crate::mechanics::structure::elements::{FiniteElement, Stretching};
+use crate::mechanics::structure::elements::{FiniteElement, Resultants, Stretching};
 use nalgebra::DMatrix;
 use smallvec::SmallVec;
 
@@ -61,6 +61,12 @@ impl FiniteElement for Spring {
         own.copy_from_slice(&forces);
         other.iter_mut().zip(&forces).for_each(|(force, value)| *force = -value);
         forces.iter().fold(0.0, |largest, value| largest.max(value.abs()))
+    }
+
+    fn resultants(&self, displacement: &[f64]) -> Option<Resultants> {
+        let mut force = [0.0; 3];
+        force.iter_mut().zip(self.forces(&self.relative(displacement))).for_each(|(own, value)| *own = value);
+        Some(Resultants::Force(force))
     }
 
     #[inline(always)]

@@ -1,4 +1,5 @@
-//! Displacements keyed by the names of the nodes, in one contiguous array: the rows of a path share the names.
+//! Vectors at nodes (displacements, reactions) keyed by the names of the nodes, in one contiguous array: the rows of a path
+//! share the names.
 
 use indexmap::IndexMap;
 use serde::de::{MapAccess, Visitor};
@@ -7,9 +8,9 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::ops::{Index, IndexMut, Range};
 use std::sync::Arc;
 
-/// Displacements (length) by node, in the model's order.
+/// A vector at each of some nodes, in the model's order: displacements (length) or forces.
 #[derive(Debug, Clone, Default)]
-pub struct Displacements {
+pub struct NodalValues {
     places: Arc<Places>,
     values: Vec<f64>,
 }
@@ -17,7 +18,7 @@ pub struct Displacements {
 /// Names and where their components are.
 type Places = IndexMap<Arc<str>, Range<usize>>;
 
-impl Displacements {
+impl NodalValues {
     /// Of nodes with so many components each, all zero.
     pub fn zero<'a>(nodes: impl Iterator<Item = &'a str>, dimension: usize) -> Self {
         nodes.map(|name| (Arc::from(name), vec![0.0; dimension])).collect()
@@ -69,7 +70,7 @@ impl Displacements {
     }
 }
 
-impl<Values: AsRef<[f64]>> FromIterator<(Arc<str>, Values)> for Displacements {
+impl<Values: AsRef<[f64]>> FromIterator<(Arc<str>, Values)> for NodalValues {
     /// Of several entries of one name the last is kept.
     fn from_iter<Entries: IntoIterator<Item = (Arc<str>, Values)>>(entries: Entries) -> Self {
         let (mut places, mut all) = (Places::new(), Vec::new());
@@ -84,7 +85,7 @@ impl<Values: AsRef<[f64]>> FromIterator<(Arc<str>, Values)> for Displacements {
 
 /// # Panics
 /// Where no node has the name.
-impl Index<&str> for Displacements {
+impl Index<&str> for NodalValues {
     type Output = [f64];
 
     fn index(&self, node: &str) -> &[f64] {
@@ -92,19 +93,19 @@ impl Index<&str> for Displacements {
     }
 }
 
-impl IndexMut<&str> for Displacements {
+impl IndexMut<&str> for NodalValues {
     fn index_mut(&mut self, node: &str) -> &mut [f64] {
         &mut self.values[self.places[node].clone()]
     }
 }
 
-impl PartialEq for Displacements {
+impl PartialEq for NodalValues {
     fn eq(&self, other: &Self) -> bool {
         self.len() == other.len() && self.iter().all(|(name, values)| other.get(name) == Some(values))
     }
 }
 
-impl Serialize for Displacements {
+impl Serialize for NodalValues {
     fn serialize<To: Serializer>(&self, to: To) -> Result<To::Ok, To::Error> {
         let mut map = to.serialize_map(Some(self.len()))?;
         for (name, values) in self.iter() {
@@ -114,17 +115,17 @@ impl Serialize for Displacements {
     }
 }
 
-impl<'de> Deserialize<'de> for Displacements {
+impl<'de> Deserialize<'de> for NodalValues {
     fn deserialize<From: Deserializer<'de>>(from: From) -> Result<Self, From::Error> {
         struct Entries;
         impl<'de> Visitor<'de> for Entries {
-            type Value = Displacements;
+            type Value = NodalValues;
 
             fn expecting(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 out.write_str("an object of arrays of numbers, by node")
             }
 
-            fn visit_map<Map: MapAccess<'de>>(self, mut map: Map) -> Result<Displacements, Map::Error> {
+            fn visit_map<Map: MapAccess<'de>>(self, mut map: Map) -> Result<NodalValues, Map::Error> {
                 let mut entries = Vec::with_capacity(map.size_hint().unwrap_or(0).min(4096));
                 while let Some(entry) = map.next_entry::<Arc<str>, Vec<f64>>()? {
                     entries.push(entry);
@@ -143,14 +144,14 @@ mod tests {
     #[test]
     fn they_are_read_as_they_were_written() {
         let text = r#"{"left":[0.5,-1.0],"tip":[],"right":[2.0]}"#;
-        let mut read: Displacements = serde_json::from_str(text).unwrap();
+        let mut read: NodalValues = serde_json::from_str(text).unwrap();
         assert_eq!(serde_json::to_string(&read).unwrap(), text);
         assert_eq!(
             (read.len(), &read["left"], read.get("tip"), read.get("top")),
             (3, &[0.5, -1.0][..], Some(&[][..]), None)
         );
         assert_eq!(read.get_index(2), Some((&Arc::from("right"), &[2.0][..])));
-        let other: Displacements = serde_json::from_str(r#"{"right":[2.0],"left":[0.5,-1.0],"tip":[]}"#).unwrap();
+        let other: NodalValues = serde_json::from_str(r#"{"right":[2.0],"left":[0.5,-1.0],"tip":[]}"#).unwrap();
         assert_eq!(read, other);
         read["right"][0] = 3.0;
         assert_ne!(read, other);

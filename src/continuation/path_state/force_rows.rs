@@ -1,0 +1,65 @@
+//! The forces of a row in the user's units: elements, supports, applied loads.
+
+use crate::continuation::path_state::row_conversion::RowSource;
+use crate::continuation::scene::Scene;
+use crate::mechanics::contact::vector::dot;
+use crate::mechanics::problem::equilibrium::write_unbalanced;
+use crate::mechanics::problem::node_contact_forces;
+use crate::mechanics::structure::elements::Resultants;
+use crate::result::increment::{ElementState, SpaceVector};
+use crate::result::nodal_values::NodalValues;
+use std::sync::Arc;
+
+/// The forces of the elements that are recorded.
+pub(crate) fn element_rows(scene: &Scene, row: &RowSource<'_>) -> Vec<ElementState> {
+    let force = scene.plan().force_scale;
+    let dimension = scene.structure.dimension;
+    let recorded = scene.recorded_forces.elements.iter();
+    recorded
+        .map(|(place, name)| {
+            let (mut axial_force, mut vector) = (None, None);
+            match scene.structure.resultants(*place, &row.state.displacement) {
+                Some(Resultants::Axial(axial)) => axial_force = Some(axial * force),
+                Some(Resultants::Force(of_spring)) => {
+                    vector = Some(of_spring[..dimension].iter().map(|value| value * force).collect());
+                }
+                None => {}
+            }
+            ElementState { element: *place as u64, name: name.as_ref().map(Arc::clone), axial_force, force: vector }
+        })
+        .collect()
+}
+
+/// The forces of the supports on the structure: what equilibrium lacks at supported components.
+pub(crate) fn support_reactions(scene: &Scene, row: &RowSource<'_>) -> NodalValues {
+    let recorded = &scene.recorded_forces;
+    if recorded.supported_nodes.is_empty() {
+        return NodalValues::default();
+    }
+    let (structure, loading) = (&scene.structure, row.loading);
+    let mut unbalanced = vec![0.0; structure.freedoms()];
+    write_unbalanced(loading, row.state, &mut unbalanced);
+    let pressed = row.state.reactions.iter().enumerate().filter(|(_, reaction)| reaction.size() > 0.0);
+    for (contact, reaction) in pressed {
+        let force = node_contact_forces::force(&loading.frame(contact, row.state), reaction);
+        loading.each_column(contact, row.state, |freedom, column| {
+            unbalanced[freedom] -= dot(column, &force);
+        });
+    }
+    let components = recorded.supported_nodes.iter().flat_map(|node| structure.translations_of(*node));
+    let held = |freedom: usize| structure.unknown_of[freedom].is_none();
+    let reactions: Vec<f64> = components.map(|freedom| if held(freedom) { unbalanced[freedom] } else { 0.0 }).collect();
+    recorded.no_reactions.scaled(&reactions, scene.plan().force_scale)
+}
+
+/// The sum of the applied forces over the nodes.
+pub(crate) fn applied_forces(scene: &Scene, row: &RowSource<'_>) -> SpaceVector {
+    let (structure, loading) = (&scene.structure, row.loading);
+    let mut sum = [0.0; 3];
+    for node in 0..structure.numbering.nodes() {
+        for (sum, freedom) in sum.iter_mut().zip(structure.translations_of(node)) {
+            *sum += row.state.load * loading.pattern.forces[freedom] + loading.held.forces[freedom];
+        }
+    }
+    sum[..structure.dimension].iter().map(|value| value * scene.plan().force_scale).collect()
+}

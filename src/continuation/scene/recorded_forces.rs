@@ -1,0 +1,30 @@
+//! The elements and supports whose forces an increment has.
+
+use crate::model::JobRequest;
+use crate::model::request::recorded_forces::recorded_elements;
+use crate::result::nodal_values::NodalValues;
+use std::sync::Arc;
+
+/// What of the forces an increment has. The reactions of all supports are computed, since the measure needs them for the
+/// balance of the whole structure; those that the request does not ask for are left out after the increment is measured.
+#[derive(Debug, Clone)]
+pub(crate) struct RecordedForces {
+    /// Places of the elements, ascending, with their names.
+    pub elements: Vec<(usize, Option<Arc<str>>)>,
+    /// Node numbers of the supports, in the order of the request.
+    pub supported_nodes: Vec<usize>,
+    /// Reactions without values, whose names those of each increment share.
+    pub no_reactions: NodalValues,
+}
+
+impl RecordedForces {
+    pub fn of(request: &JobRequest) -> Self {
+        let model = &request.model;
+        let named = |place: usize| (place, model.elements[place].name().map(Arc::from));
+        Self {
+            elements: recorded_elements(request).into_iter().map(named).collect(),
+            supported_nodes: model.supports.keys().filter_map(|name| model.nodes.get_index_of(name)).collect(),
+            no_reactions: NodalValues::zero(model.supports.keys().map(String::as_str), model.dimension),
+        }
+    }
+}
