@@ -1,5 +1,7 @@
 //! A flag by which a solve is stopped from outside; looked at in every iteration, inside a quadratic program too.
 
+#![warn(missing_docs)]
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 

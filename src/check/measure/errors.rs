@@ -1,5 +1,7 @@
 //! The errors of an increment, and their maxima over a path.
 
+#![warn(missing_docs)]
+
 use serde::{Deserialize, Serialize};
 
 /// How far a point is from the equations that it should satisfy, as the measure that stands apart from the solver finds

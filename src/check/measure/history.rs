@@ -1,6 +1,8 @@
 //! The history of a judge. A judge with this history checks a path that is resumed, or followed along another
 //! direction, as if the path had not been interrupted.
 
+#![warn(missing_docs)]
+
 use crate::check::measure::Judge;
 use crate::check::measure::posted::{Posted, PostedLoading};
 use crate::check::measure::vector::MeasuredVector;

@@ -1,5 +1,7 @@
 //! The result of a solve.
 
+#![warn(missing_docs)]
+
 use crate::complementarity::mpec::program::solve_statistics::{SolverCounts, SolverIterate};
 use nalgebra::DVector;
 use thiserror::Error;

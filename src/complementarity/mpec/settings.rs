@@ -1,5 +1,7 @@
 //! Settings of the solver.
 
+#![warn(missing_docs)]
+
 /// The criterion by which a branch counts as solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Finish {

@@ -5,6 +5,8 @@
 //! number, and reads them exactly (`float_roundtrip`). A checkpoint does not contain the scene (structure, loads,
 //! settings): it is resumed with the scene with which it was made, or with one that differs in `max_increments` alone.
 
+#![warn(missing_docs)]
+
 use crate::continuation::path_state::path_context::PathTrace;
 use crate::continuation::path_state::resumable_state::{Listed, Progress};
 use crate::continuation::path_state::visited_states::Numbered;

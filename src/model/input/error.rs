@@ -1,5 +1,7 @@
 //! Mistakes in the input, each with its place.
 
+#![warn(missing_docs)]
+
 use serde::Serialize;
 use std::fmt;
 

@@ -1,5 +1,7 @@
 //! How a path is traced.
 
+#![warn(missing_docs)]
+
 pub use crate::branching::directions::feasible_direction::Selection;
 use crate::model::request::record::Record;
 use serde::{Deserialize, Serialize};

@@ -22,13 +22,23 @@ pub use record::{ContactRange, Record, RecordedContact, RecordedContacts};
 pub use structure::{Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Until};
 
 /// A model and how to trace it.
+#[warn(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct JobRequest {
+    /// Structure, obstacles and loads.
     pub model: Model,
+    /// How the path is traced.
     #[serde(default)]
     pub analysis: Analysis,
+}
+
+impl From<Model> for JobRequest {
+    /// The model with the default analysis.
+    fn from(model: Model) -> Self {
+        Self { model, analysis: Analysis::default() }
+    }
 }
 
 /// A direction of another job, to be followed by a new one with the same model and analysis; it explores nothing.

@@ -1,5 +1,7 @@
 //! What is kept of the increments.
 
+#![warn(missing_docs)]
+
 use serde::{Deserialize, Serialize};
 
 /// What is kept of the increments: printed, streamed and stored. Every increment is traced and judged in full before

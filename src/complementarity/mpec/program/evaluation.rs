@@ -9,6 +9,7 @@ use crate::complementarity::mpec::program::problem::Problem;
 use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 
 /// The function of a [`Problem`] that returned a number that is not finite.
+#[warn(missing_docs)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     Start,

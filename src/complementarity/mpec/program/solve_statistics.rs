@@ -1,5 +1,7 @@
 //! Counts of work, and the iterates of a solve.
 
+#![warn(missing_docs)]
+
 use nalgebra::DVector;
 
 /// Counts of the work of a solve.
