@@ -88,8 +88,8 @@
 
 #![warn(missing_docs)]
 
-// Rooms are hidden, and need no documentation on every item, unless a file asks for it: those that define what is exported
-// below have `missing_docs` as a warning again.
+// Rooms are hidden and need no documentation on every item, except `result` and those files that define what is exported
+// below: they have `missing_docs` as a warning again.
 #[cfg_attr(not(interior), doc(hidden))]
 #[allow(missing_docs)]
 pub mod algebra;
@@ -122,7 +122,6 @@ pub mod output;
 #[allow(missing_docs)]
 pub mod resources;
 #[cfg_attr(not(interior), doc(hidden))]
-#[allow(missing_docs)]
 pub mod result;
 #[cfg_attr(not(interior), doc(hidden))]
 #[allow(missing_docs)]

@@ -34,6 +34,7 @@ impl Displacements {
         self.places.len()
     }
 
+    /// Whether there are no nodes.
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
     }
@@ -49,6 +50,7 @@ impl Displacements {
         Some((name, self.values.get(range.clone())?))
     }
 
+    /// Names of the nodes, in order.
     pub fn keys(&self) -> impl Iterator<Item = &Arc<str>> {
         self.places.keys()
     }
@@ -58,6 +60,7 @@ impl Displacements {
         self.places.values().map(|range| &self.values[range.clone()])
     }
 
+    /// Names and components, in order.
     pub fn iter(&self) -> impl Iterator<Item = (&Arc<str>, &[f64])> {
         self.places.iter().map(|(name, range)| (name, &self.values[range.clone()]))
     }

@@ -8,8 +8,6 @@
 //! | `program_iterate` | a point on the way to the end of an increment by its program |
 //! | `stop_reason`, `report` | why a path ended, and its totals |
 
-#![warn(missing_docs)]
-
 pub mod displacements;
 pub mod increment;
 pub mod plan;

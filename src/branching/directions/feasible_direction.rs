@@ -20,9 +20,12 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Selection {
+    /// The largest dissipation per arc length.
     #[default]
     MaxDissipation,
+    /// The fastest fall of the potential energy of structure and loads per arc length.
     MinPotentialEnergy,
+    /// The smallest angle of the displacement rate with the incoming one.
     Straightest,
 }
 

@@ -31,10 +31,13 @@ pub struct Record {
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(untagged)]
 pub enum RecordedContacts {
+    /// All, or those in reach.
     Range(ContactRange),
+    /// Those that are named.
     Named(Vec<RecordedContact>),
 }
 
+/// Contacts by whether they are in reach.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -50,7 +53,9 @@ pub enum ContactRange {
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RecordedContact {
+    /// Name of the node.
     pub node: String,
+    /// Name of the obstacle.
     pub obstacle: String,
 }
 

@@ -7,8 +7,11 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Component {
+    /// Along the first axis.
     X,
+    /// Along the second axis.
     Y,
+    /// Along the third axis; in space only.
     Z,
 }
 
