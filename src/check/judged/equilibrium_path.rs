@@ -86,7 +86,8 @@ impl<'a> EquilibriumPath<'a> {
     /// let sticking = directions.iter().position(|direction| direction.contacts == [Status::Stick]).unwrap();
     ///
     /// let mut branch = path.follow(sticking)?;
-    /// let corner = branch.find(|point| point.increment.point.kind == PointKind::NonsmoothLimit).unwrap().increment;
+    /// assert_eq!(branch.next().unwrap().increment.point.kind, PointKind::Start);
+    /// let corner = branch.find(|point| point.increment.point.event.is_some()).unwrap().increment;
     /// // Stuck, the load falls to the other side of the friction cone.
     /// let exact = 2.2 * corner.displacements["node"][0] - 1.5;
     /// assert!((corner.load_factor - exact).abs() < 1e-12);

@@ -60,10 +60,7 @@ impl Element {
     }
 
     /// A spring between a node and the ground; `stiffness` is symmetric, force per length.
-    pub fn spring<const DIMENSION: usize>(
-        node: impl Into<String>,
-        stiffness: [[f64; DIMENSION]; DIMENSION],
-    ) -> Self {
+    pub fn spring<const DIMENSION: usize>(node: impl Into<String>, stiffness: [[f64; DIMENSION]; DIMENSION]) -> Self {
         Self::Spring { nodes: vec![node.into()], stiffness: rows(stiffness) }
     }
 
