@@ -3,7 +3,7 @@
 //! Quantities are in any consistent set of units; the solver makes them dimensionless. Names are the user's, order is
 //! kept as written: it fixes the numbering of unknowns and with it every bit of the result.
 //!
-//! [`structure`] is what is modelled, [`analysis`] how it is traced, [`record`] what is kept of it. Bounds that a schema can
+//! `structure` is what is modelled, `analysis` how it is traced, `record` what is kept of it. Bounds that a schema can
 //! express stand with the fields, for the interface's description; [`check`](crate::model::check) holds to them and to the others.
 
 mod analysis;
