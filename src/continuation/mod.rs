@@ -6,7 +6,7 @@
 //! | module or file | contents |
 //! |---|---|
 //! | [`scene`] | a request made dimensionless, and the plan: features the scene does not need |
-//! | [`path_state`] | the state of a path: present point, contacts in reach, totals, history; rows for the user |
+//! | `path_state` | the state of a path: present point, contacts in reach, totals, history; rows for the user |
 //! | [`contact_changes`] | contact changes that are predicted, treated together, or reached in one straight step |
 //! | [`path`] | the loop of an increment: stages, step control, trial, acceptance, classification, checkpoints |
 //! | [`penalty`] | the conventional method with penalties, for comparison |

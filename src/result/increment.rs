@@ -11,6 +11,7 @@ use std::sync::Arc;
 pub struct Increment {
     /// 0 for the start of the path.
     pub index: u64,
+    /// Name of the running stage.
     pub stage: Arc<str>,
     /// Multiplier of the running stage's pattern.
     pub load_factor: f64,
@@ -37,19 +38,26 @@ pub struct Increment {
     #[serde(default, skip_serializing_if = "SmallVec::is_empty")]
     #[cfg_attr(feature = "server", schema(value_type = Vec<f64>))]
     pub applied_forces: SpaceVector,
+    /// What kind of point of the path this is.
     pub point: Point,
     /// Feasible one-sided directions, the one taken among them; present where there is a choice.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub directions: Option<Vec<Direction>>,
+    /// Energies from the start of the path.
     pub energy: Energy,
+    /// Accuracy of this point, and work from the start of the path.
     pub diagnostics: Diagnostics,
 }
 
+/// A contact at an increment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct ContactState {
+    /// Name of the node.
     pub node: Arc<str>,
+    /// Name of the obstacle.
     pub obstacle: Arc<str>,
+    /// Whether and how they touch.
     pub status: Status,
     /// Distance to the obstacle (length).
     pub gap: f64,
@@ -103,18 +111,24 @@ pub struct ElementState {
     pub force: Option<SpaceVector>,
 }
 
+/// Status of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
+    /// They do not touch, or touch without a reaction and part.
     Free,
+    /// They touch and the node does not move along the obstacle.
     Stick,
+    /// They touch and the node moves along the obstacle.
     Slip,
 }
 
+/// A point of the path: what happens there and what was found of its directions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct Point {
+    /// Its kind.
     pub kind: PointKind,
     /// Two or more feasible directions share the sign of the load rate.
     pub bifurcation: bool,
@@ -142,16 +156,24 @@ fn is_zero(count: &u64) -> bool {
     *count == 0
 }
 
+/// Kind of a point of the path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum PointKind {
+    /// The start of the path or of a stage.
     Start,
+    /// No event.
     Regular,
+    /// The load rate changes its sign continuously, within a contact mode.
     SmoothLimit,
+    /// The load rate changes its sign by a jump, where a contact changes.
     NonsmoothLimit,
+    /// Paths of one contact mode cross or branch.
     SmoothBifurcation,
+    /// A contact changes its status, the load rate keeps its sign.
     ContactChange,
+    /// The end of a stage.
     End,
 }
 
@@ -165,6 +187,7 @@ pub struct Direction {
     pub load_rate: f64,
     /// Energy per arc length.
     pub dissipation_rate: f64,
+    /// Whether the path goes on this way.
     pub taken: bool,
     /// The way the path came from; never taken.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -178,11 +201,15 @@ pub struct Direction {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct Energy {
+    /// Work of forces, prescribed displacements and moving obstacles (force times length).
     pub external_work: f64,
+    /// Strain energy of the elements (force times length).
     pub strain: f64,
+    /// Energy dissipated by friction (force times length).
     pub dissipated: f64,
 }
 
+/// Accuracy of an increment, and totals of work up to it.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct Diagnostics {
@@ -196,11 +223,14 @@ pub struct Diagnostics {
     pub energy_error: f64,
     /// Estimated error of this point (dimensionless displacement).
     pub error_estimate: f64,
+    /// Factorisations of matrices.
     pub factorisations: u64,
     /// Of the factorisations those that smooth bifurcation points took: to locate them and to list the directions there.
     #[serde(default)]
     pub bifurcation_factorisations: u64,
+    /// Iterations of Newton's method.
     pub newton_iterations: u64,
+    /// Quadratic programs.
     pub qp_solves: u64,
     /// Programs of increments that were solved; a certificate is not one.
     pub mpec_solves: u64,

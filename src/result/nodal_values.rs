@@ -35,6 +35,7 @@ impl NodalValues {
         self.places.len()
     }
 
+    /// Whether there are no nodes.
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
     }
@@ -50,6 +51,7 @@ impl NodalValues {
         Some((name, self.values.get(range.clone())?))
     }
 
+    /// Names of the nodes, in order.
     pub fn keys(&self) -> impl Iterator<Item = &Arc<str>> {
         self.places.keys()
     }
@@ -59,6 +61,7 @@ impl NodalValues {
         self.places.values().map(|range| &self.values[range.clone()])
     }
 
+    /// Names and components, in order.
     pub fn iter(&self) -> impl Iterator<Item = (&Arc<str>, &[f64])> {
         self.places.iter().map(|(name, range)| (name, &self.values[range.clone()]))
     }

@@ -8,7 +8,9 @@ use serde::{Deserialize, Serialize};
 pub struct Plan {
     /// Free displacement components.
     pub unknowns: u64,
+    /// Contacts of the model.
     pub contacts: u64,
+    /// Stages of the model.
     pub stages: u64,
     /// Length that makes displacements dimensionless.
     pub displacement_scale: f64,
@@ -24,6 +26,8 @@ pub struct Plan {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct LeftOut {
+    /// What is not done.
     pub what: String,
+    /// The reason.
     pub why: String,
 }

@@ -11,6 +11,7 @@ pub struct ProgramIterate {
     pub relaxation: Option<f64>,
     /// The arc length of the iterate over that of the increment.
     pub size: f64,
+    /// Multiplier of the running stage's pattern.
     pub load_factor: f64,
     /// Sum of the violations of the program's rows, dimensionless.
     pub violation: f64,
@@ -21,7 +22,9 @@ pub struct ProgramIterate {
 /// A contact at an iterate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactIterate {
+    /// Name of the node.
     pub node: Arc<str>,
+    /// Name of the obstacle.
     pub obstacle: Arc<str>,
     /// Length.
     pub gap: f64,

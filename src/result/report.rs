@@ -7,19 +7,28 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct Report {
+    /// Why the path ended.
     pub stop_reason: StopReason,
     /// The reason in a sentence.
     pub sentence: String,
+    /// Number of increments.
     pub increments: u64,
+    /// Time of the solver in seconds.
     pub elapsed_s: f64,
+    /// Largest equilibrium residual over the force scale.
     pub largest_residual: f64,
+    /// Largest violation of contact and friction, dimensionless.
     pub largest_complementarity: f64,
+    /// Largest `|external work - strain - dissipated|` over the largest energy up to there.
     pub largest_energy_error: f64,
+    /// Factorisations of matrices.
     pub factorisations: u64,
     /// Of the factorisations those that smooth bifurcation points took: to locate them and to list the directions there.
     #[serde(default)]
     pub bifurcation_factorisations: u64,
+    /// Iterations of Newton's method.
     pub newton_iterations: u64,
+    /// Quadratic programs.
     pub qp_solves: u64,
     /// Programs of increments that were solved; a certificate is not one.
     pub mpec_solves: u64,

@@ -43,12 +43,16 @@ pub enum StopReason {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
+    /// The path went as far as it was asked to.
     Completed,
+    /// The path ended before.
     Stopped,
+    /// The caller ended it.
     Cancelled,
 }
 
 impl StopReason {
+    /// Which of the three ways in which a path may end this is.
     pub fn outcome(self) -> Outcome {
         match self {
             Self::StagesCompleted | Self::MaxIncrements => Outcome::Completed,

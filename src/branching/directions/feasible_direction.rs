@@ -15,13 +15,17 @@ use serde::{Deserialize, Serialize};
 /// Which direction is taken where there are several. `max_dissipation`: that of largest dissipation per arc length;
 /// `min_potential_energy`: that along which the potential energy of structure and loads falls fastest per arc length; ties of
 /// both go to the straightest; `straightest`: that whose displacement rate makes the smallest angle with the incoming one.
+#[warn(missing_docs)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Selection {
+    /// The largest dissipation per arc length.
     #[default]
     MaxDissipation,
+    /// The fastest fall of the potential energy of structure and loads per arc length.
     MinPotentialEnergy,
+    /// The smallest angle of the displacement rate with the incoming one.
     Straightest,
 }
 

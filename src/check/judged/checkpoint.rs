@@ -11,7 +11,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JudgedCheckpoint {
+    /// The path at one of its points.
     pub path: Checkpoint,
+    /// What the measure needs of the points before.
     pub history: JudgeHistory,
     /// The maxima of the measure up to here.
     pub measure: MeasureReport,
@@ -26,8 +28,10 @@ pub struct JudgedCheckpoint {
 /// Why a judged path cannot be resumed, or a direction of it cannot be followed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum JudgedCheckpointError {
+    /// The path itself.
     #[error(transparent)]
     Path(#[from] CheckpointError),
+    /// The history of its measure.
     #[error(transparent)]
     History(#[from] HistoryError),
 }

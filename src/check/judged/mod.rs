@@ -6,15 +6,20 @@
 //!
 //! | file | what it does |
 //! |---|---|
-//! | `continuation` | step by step, or as an iterator of what is recorded: traces, judges, goes on from a checkpoint |
+//! | `path` | step by step, or as an iterator of what is recorded: traces, judges, goes on from a checkpoint |
 //! | `increment`, `report` | what it gives |
 //! | `record` | the parts of an increment that are kept after it has been judged |
 //! | `alternatives` | which directions are new at an increment |
+//! | `equilibrium_problem`, `equilibrium_path` | the same for programs that use the crate as a library |
 //! | `checkpoint` | a checkpoint of the path with the history of its judge |
 //! | `schema` | their JSON Schema |
 
+#![warn(missing_docs)]
+
 pub mod alternatives;
 pub mod checkpoint;
+pub mod equilibrium_path;
+pub mod equilibrium_problem;
 pub mod increment;
 pub mod path;
 pub(crate) mod record;

@@ -34,9 +34,11 @@ pub struct JudgedPath<'a> {
 /// A step of the path, with its increment if this is recorded.
 #[derive(Debug)]
 pub struct Step {
+    /// Index of the increment.
     pub index: u64,
     /// The totals of the path.
     pub diagnostics: Diagnostics,
+    /// The increment, if it is recorded.
     pub given: Option<JudgedIncrement>,
 }
 

@@ -11,8 +11,10 @@ pub const OFF_MEASURE: f64 = 1e-9;
 /// Totals and maxima over a whole path; one flat object, `measure` its last member.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JudgedReport {
+    /// Stop reason and totals.
     #[serde(flatten)]
     pub report: Report,
+    /// The largest errors.
     pub measure: MeasureReport,
 }
 

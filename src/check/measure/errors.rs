@@ -1,5 +1,7 @@
 //! The errors of an increment, and their maxima over a path.
 
+#![warn(missing_docs)]
+
 use serde::{Deserialize, Serialize};
 
 /// How far a point is from the equations that it should satisfy, as the measure that stands apart from the solver finds
@@ -92,6 +94,7 @@ pub(super) fn worse(error: f64, other: f64) -> f64 {
 #[cfg_attr(feature = "server", schema(as = LargestError))]
 #[serde(deny_unknown_fields)]
 pub struct Largest {
+    /// Dimensionless (`slip_direction`: radians), 0 or more.
     pub value: f64,
     /// Index of the first increment with this value; null where the figure is 0 everywhere.
     pub index: Option<u64>,
@@ -102,17 +105,28 @@ pub struct Largest {
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Maxima {
+    /// Of [`Errors::equilibrium`].
     pub equilibrium: Largest,
+    /// Of [`Errors::support`].
     pub support: Largest,
+    /// Of [`Errors::contact`].
     pub contact: Largest,
+    /// Of [`Errors::friction`].
     pub friction: Largest,
+    /// Of [`Errors::cone`].
     pub cone: Largest,
+    /// Of [`Errors::reported`].
     pub reported: Largest,
+    /// Of [`Errors::global_equilibrium`].
     #[serde(default)]
     pub global_equilibrium: Largest,
+    /// Of [`Errors::arc_length`].
     pub arc_length: Largest,
+    /// Of [`Errors::energy`].
     pub energy: Largest,
+    /// Of [`Errors::strain_energy`].
     pub strain_energy: Largest,
+    /// Of [`Errors::slip_direction`].
     pub slip_direction: Largest,
 }
 

@@ -1,6 +1,8 @@
 //! The history of a judge. A judge with this history checks a path that is resumed, or followed along another
 //! direction, as if the path had not been interrupted.
 
+#![warn(missing_docs)]
+
 use crate::check::measure::Judge;
 use crate::check::measure::posted::{Posted, PostedLoading};
 use crate::check::measure::vector::MeasuredVector;
@@ -60,10 +62,22 @@ pub struct JudgeHistory {
 /// Why a history cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum HistoryError {
+    /// Written by another version of this crate.
     #[error("the measure's history is of version {found}; this program reads version {VERSION}")]
-    Version { found: u32 },
+    Version {
+        /// The version of the format that was found.
+        found: u32,
+    },
+    /// Made with another model.
     #[error("the measure's history does not fit the model: it has {found} {what}, the model {expected}")]
-    OtherModel { what: &'static str, found: usize, expected: usize },
+    OtherModel {
+        /// What differs in number, in words.
+        what: &'static str,
+        /// How many of them the history has.
+        found: usize,
+        /// How many the model has.
+        expected: usize,
+    },
 }
 
 pub fn history_of(judge: &Judge) -> JudgeHistory {

@@ -1,5 +1,7 @@
 //! The result of a solve.
 
+#![warn(missing_docs)]
+
 use crate::complementarity::mpec::program::solve_statistics::{SolverCounts, SolverIterate};
 use nalgebra::DVector;
 use thiserror::Error;
@@ -38,6 +40,7 @@ pub enum SolveStatus {
 /// A variable that grows without bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Growth {
+    /// Its index, from 0.
     pub variable: usize,
     /// Value at which the optimality conditions hold to the tolerance.
     pub from: f64,
@@ -56,8 +59,11 @@ pub enum StationarityKind {
     Strong,
     /// No first-order descent in any of the enumerated branches.
     Branch,
+    /// Multipliers of each biactive pair both positive, or one of them zero.
     Mordukhovich,
+    /// Product of the multipliers of each biactive pair 0 or more.
     Clarke,
+    /// Multipliers of the biactive pairs of any sign.
     Weak,
     /// Multipliers exist in one of the branches that meet at biactive pairs, but were not shown to exist in all others
     /// (where both members of a cone pair vanish, infinitely many branches meet). B-stationarity is not claimed.
@@ -69,20 +75,25 @@ pub enum StationarityKind {
 /// The point returned by a solve, with its status and multipliers.
 #[derive(Debug, Clone)]
 pub struct ProgramSolution {
+    /// How the solve ended.
     pub status: SolveStatus,
     /// The variables.
     pub x: DVector<f64>,
+    /// `f(x)`.
     pub objective: f64,
+    /// Of all constraints, zero where none were found.
     pub multipliers: Multipliers,
     /// One per pair.
     pub activity: Vec<PairActivity>,
     /// One per cone pair.
     pub cone_activity: Vec<ConeActivity>,
+    /// The strongest kind of stationarity that was established.
     pub stationarity: StationarityKind,
     /// Largest violation of an equality, inequality or sign; bounds always hold.
     pub largest_violation: f64,
     /// Largest `|a_i b_i|`, or `|A_i·B_i|` for cone pairs.
     pub largest_product: f64,
+    /// Work of the solve.
     pub counts: SolverCounts,
     /// The last `ε` used; `None` where the start's own pattern was sufficient.
     pub last_relaxation: Option<f64>,
@@ -93,14 +104,50 @@ pub struct ProgramSolution {
 /// Invalid input of a solve.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ProgramInputError {
+    /// The start has another number of variables.
     #[error("the start has {found} variables, the problem {expected}")]
-    StartLength { expected: usize, found: usize },
+    StartLength {
+        /// Variables of the problem.
+        expected: usize,
+        /// Entries of the start.
+        found: usize,
+    },
+    /// A vector of bounds has another number of entries than the problem has variables.
     #[error("the bounds have {lower} and {upper} entries, the problem {expected} variables")]
-    BoundsLength { expected: usize, lower: usize, upper: usize },
+    BoundsLength {
+        /// Variables of the problem.
+        expected: usize,
+        /// Entries of the lower bounds.
+        lower: usize,
+        /// Entries of the upper bounds.
+        upper: usize,
+    },
+    /// No number lies between two bounds.
     #[error("variable {variable} has the lower bound {lower} and the upper bound {upper}")]
-    Bounds { variable: usize, lower: f64, upper: f64 },
+    Bounds {
+        /// Index of the variable, from 0.
+        variable: usize,
+        /// Its lower bound.
+        lower: f64,
+        /// Its upper bound.
+        upper: f64,
+    },
+    /// A second-order cone of fewer than 2 dimensions.
     #[error("cone pair {pair} has members of size {size}; 2 or more is expected")]
-    ConeSize { pair: usize, size: usize },
+    ConeSize {
+        /// Index of the cone pair, from 0.
+        pair: usize,
+        /// Its size.
+        size: usize,
+    },
+    /// A setting out of its range.
     #[error("setting {name} is {value}; it must be {wanted}")]
-    Setting { name: &'static str, value: f64, wanted: &'static str },
+    Setting {
+        /// Name of the field of [`Settings`](crate::complementarity::mpec::Settings).
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// The range, in words.
+        wanted: &'static str,
+    },
 }

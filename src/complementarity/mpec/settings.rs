@@ -1,5 +1,7 @@
 //! Settings of the solver.
 
+#![warn(missing_docs)]
+
 /// The criterion by which a branch counts as solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Finish {
@@ -28,6 +30,7 @@ pub struct Settings {
     pub iteration_limit: usize,
     /// Whether the start's own pattern of zero members is tried before any regularisation.
     pub warm_start: bool,
+    /// Where a branch counts as solved.
     pub finish: Finish,
     /// Largest number of restarts from a larger `ε`.
     pub restarts: usize,

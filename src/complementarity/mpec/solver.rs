@@ -12,6 +12,8 @@
 //! The result is a local solution. Source of the sequence: S. Scholtes, SIAM J. Optim. 11 (2001),
 //! doi:10.1137/S1052623499361233.
 
+#![warn(missing_docs)]
+
 use crate::complementarity::mpec::tolerances::{LARGEST_RELAXATION, RESTART_FACTOR};
 use nalgebra::DVector;
 

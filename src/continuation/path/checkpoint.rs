@@ -5,6 +5,8 @@
 //! number, and reads them exactly (`float_roundtrip`). A checkpoint does not contain the scene (structure, loads,
 //! settings): it is resumed with the scene with which it was made, or with one that differs in `max_increments` alone.
 
+#![warn(missing_docs)]
+
 use crate::continuation::path_state::path_context::PathTrace;
 use crate::continuation::path_state::resumable_state::{Listed, Progress};
 use crate::continuation::path_state::visited_states::Numbered;
@@ -32,6 +34,7 @@ pub struct Checkpoint {
 pub struct Trail(Vec<Numbered>);
 
 impl Trail {
+    /// Whether it has no states.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -40,18 +43,47 @@ impl Trail {
 /// Why a checkpoint cannot be resumed, or a direction not followed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CheckpointError {
+    /// Written by another version of this crate.
     #[error("the checkpoint is of version {found}; this program reads version {VERSION}")]
-    Version { found: u32 },
+    Version {
+        /// The version of the format that was found.
+        found: u32,
+    },
+    /// Made with another model.
     #[error("the checkpoint does not fit the model: it has {found} {what}, the model {expected}")]
-    OtherModel { what: &'static str, found: usize, expected: usize },
+    OtherModel {
+        /// What differs in number, in words.
+        what: &'static str,
+        /// How many of them the checkpoint has.
+        found: usize,
+        /// How many the model has.
+        expected: usize,
+    },
+    /// The path has one way on, or does not list directions.
     #[error("no directions are listed at this point: the path has one way on")]
     NothingListed,
+    /// The point has no direction of this place.
     #[error("found {found}; {listed} directions are listed at this point: 0 to {} would do", listed.saturating_sub(1))]
-    NoSuchDirection { found: usize, listed: usize },
+    NoSuchDirection {
+        /// The place asked for, from 0.
+        found: usize,
+        /// Number of directions listed.
+        listed: usize,
+    },
+    /// A motion that no element resists.
     #[error("direction {direction} is a mechanism, a motion that no element resists: no path goes that way")]
-    Mechanism { direction: usize },
+    Mechanism {
+        /// Its place in the list, from 0.
+        direction: usize,
+    },
+    /// The stage ends at the point if the path leaves it this way.
     #[error("stage \"{stage}\" ends at this point along direction {direction}: there is nothing of it to follow")]
-    StageEnds { stage: String, direction: usize },
+    StageEnds {
+        /// Name of the stage.
+        stage: String,
+        /// Place of the direction in the list, from 0.
+        direction: usize,
+    },
 }
 
 impl Checkpoint {

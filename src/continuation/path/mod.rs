@@ -12,7 +12,7 @@
 //! | `mpec_increments` | increments found by their program alone |
 //! | `checkpoint`, `branch_switching` | checkpoints to resume a path; a path along another direction |
 //!
-//! All of them work on one [`PathTrace`](crate::continuation::path_state::path_context::PathTrace), which owns the state.
+//! All of them work on one `PathTrace` (`continuation::path_state::path_context`), which owns the state.
 
 pub(crate) mod acceptance;
 pub(crate) mod branch_switching;

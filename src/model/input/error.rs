@@ -1,5 +1,7 @@
 //! Mistakes in the input, each with its place.
 
+#![warn(missing_docs)]
+
 use serde::Serialize;
 use std::fmt;
 
@@ -14,6 +16,7 @@ pub struct InputError {
 }
 
 impl InputError {
+    /// A mistake at a place.
     pub fn new(pointer: impl Into<String>, detail: impl Into<String>) -> Self {
         Self { pointer: pointer.into(), detail: detail.into() }
     }

@@ -1,4 +1,9 @@
 //! How a path is traced.
+//!
+//! Fields without a comment are described by their types: the comment of a field would take the place of the type's
+//! description in the forms that the dashboard makes of `openapi.json`.
+
+#![warn(missing_docs)]
 
 pub use crate::branching::directions::feasible_direction::Selection;
 use crate::model::request::record::Record;
@@ -9,9 +14,13 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Analysis {
+    #[allow(missing_docs)]
     pub method: Method,
+    #[allow(missing_docs)]
     pub selection: Selection,
+    #[allow(missing_docs)]
     pub events: Events,
+    #[allow(missing_docs)]
     pub arc_length: ArcLength,
     /// Counted over the whole job, the rows in which later stages begin among them; 1 or more.
     #[cfg_attr(feature = "server", schema(minimum = 1, maximum = 10_000_000))]
@@ -87,6 +96,7 @@ impl Default for Analysis {
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Mpec {
+    #[allow(missing_docs)]
     pub certificate: Certificate,
 }
 
@@ -96,6 +106,7 @@ pub struct Mpec {
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Certificate {
+    /// The program is not solved where the point is shown to solve it.
     #[default]
     Use,
     /// Every increment's end is found by its program alone, from the point before and the direction there. `keep_all`
@@ -110,9 +121,12 @@ pub enum Certificate {
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
+    /// Arc-length steps in the current contact mode, which is decided where it can change.
     #[default]
     Auto,
+    /// Every increment by the MPEC of Kanno and Martins.
     Mpec,
+    /// Penalty contact and regularised friction under a conventional arc-length method.
     Regularised,
 }
 
@@ -152,6 +166,7 @@ pub struct Regularised {
     /// changes and no displacement does, as under an obstacle that slides along, it has to be above 0.
     #[cfg_attr(feature = "server", schema(minimum = 0.0))]
     pub load_weight: f64,
+    #[allow(missing_docs)]
     pub load_sign: LoadSign,
 }
 

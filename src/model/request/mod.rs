@@ -3,7 +3,7 @@
 //! Quantities are in any consistent set of units; the solver makes them dimensionless. Names are the user's, order is
 //! kept as written: it fixes the numbering of unknowns and with it every bit of the result.
 //!
-//! [`structure`] is what is modelled, [`analysis`] how it is traced, [`record`] what is kept of it. Bounds that a schema can
+//! `structure` is what is modelled, `analysis` how it is traced, `record` what is kept of it. Bounds that a schema can
 //! express stand with the fields, for the interface's description; [`check`](crate::model::check) holds to them and to the others.
 
 mod analysis;
@@ -26,13 +26,23 @@ pub use record::{
 pub use structure::{Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Until};
 
 /// A model and how to trace it.
+#[warn(missing_docs)]
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct JobRequest {
+    /// Structure, obstacles and loads.
     pub model: Model,
+    /// How the path is traced.
     #[serde(default)]
     pub analysis: Analysis,
+}
+
+impl From<Model> for JobRequest {
+    /// The model with the default analysis.
+    fn from(model: Model) -> Self {
+        Self { model, analysis: Analysis::default() }
+    }
 }
 
 /// A direction of another job, to be followed by a new one with the same model and analysis; it explores nothing.

@@ -1,5 +1,7 @@
 //! What is kept of the increments.
 
+#![warn(missing_docs)]
+
 use serde::{Deserialize, Serialize};
 
 /// What is kept of the increments: printed, streamed and stored. Every increment is traced and judged in full before
@@ -35,10 +37,13 @@ pub struct Record {
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(untagged)]
 pub enum RecordedContacts {
+    /// All, or those in reach.
     Range(ContactRange),
+    /// Those that are named.
     Named(Vec<RecordedContact>),
 }
 
+/// Contacts by whether they are in reach.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -54,7 +59,9 @@ pub enum ContactRange {
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(untagged)]
 pub enum RecordedElements {
+    /// All or none.
     Range(ForceRange),
+    /// Those that are listed, each once.
     Listed(Vec<ElementReference>),
 }
 
@@ -63,15 +70,20 @@ pub enum RecordedElements {
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(untagged)]
 pub enum RecordedSupports {
+    /// All or none.
     Range(ForceRange),
+    /// Supported nodes, each once.
     Named(Vec<String>),
 }
 
+/// All elements or supports of the model, or none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ForceRange {
+    /// Every one.
     All,
+    /// None of them.
     None,
 }
 
@@ -80,7 +92,9 @@ pub enum ForceRange {
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(untagged)]
 pub enum ElementReference {
+    /// Place in the model's `elements`, from 0.
     Place(u64),
+    /// Name of the element.
     Name(String),
 }
 
@@ -89,7 +103,9 @@ pub enum ElementReference {
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RecordedContact {
+    /// Name of the node.
     pub node: String,
+    /// Name of the obstacle.
     pub obstacle: String,
 }
 

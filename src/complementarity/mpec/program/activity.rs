@@ -1,5 +1,7 @@
 //! Which members of the pairs are zero at a point.
 
+#![warn(missing_docs)]
+
 use nalgebra::DVector;
 
 use crate::complementarity::mpec::program::cone::ConeActivity;

@@ -12,6 +12,8 @@
 //! Source: M. Fukushima, Z.-Q. Luo and P. Tseng, *Smoothing functions for second-order-cone complementarity problems*,
 //! SIAM J. Optim. 12 (2002), doi:10.1137/S1052623400380365 (spectral values, projection).
 
+#![warn(missing_docs)]
+
 use nalgebra::{DMatrix, DVector};
 
 /// The position of a complementary pair relative to the cone.

@@ -9,19 +9,32 @@ use crate::complementarity::mpec::program::problem::Problem;
 use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 
 /// The function of a [`Problem`] that returned a number that is not finite.
+#[warn(missing_docs)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
+    /// The point from which the solve was to start.
     Start,
+    /// [`Problem::objective`].
     Objective,
+    /// [`Problem::objective_gradient`].
     ObjectiveGradient,
+    /// [`Problem::equality_values`].
     Equalities,
+    /// [`Problem::equality_jacobian`].
     EqualityJacobian,
+    /// [`Problem::inequality_values`].
     Inequalities,
+    /// [`Problem::inequality_jacobian`].
     InequalityJacobian,
+    /// [`Problem::pair_values`].
     Pairs,
+    /// [`Problem::pair_jacobians`].
     PairJacobians,
+    /// [`Problem::cone_values`].
     Cones,
+    /// [`Problem::cone_jacobians`].
     ConeJacobians,
+    /// [`Problem::quadratic_model`].
     QuadraticModel,
 }
 

@@ -1,5 +1,7 @@
 //! The interface of a mathematical program with complementarity constraints.
 
+#![warn(missing_docs)]
+
 use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 use nalgebra::{DMatrix, DVector};
 

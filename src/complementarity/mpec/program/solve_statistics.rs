@@ -1,5 +1,7 @@
 //! Counts of work, and the iterates of a solve.
 
+#![warn(missing_docs)]
+
 use nalgebra::DVector;
 
 /// Counts of the work of a solve.
@@ -26,7 +28,9 @@ pub struct SolverCounts {
 pub struct SolverIterate {
     /// The bound on the products; `None` in a branch, which has no products.
     pub relaxation: Option<f64>,
+    /// The variables.
     pub x: DVector<f64>,
+    /// `f(x)`.
     pub objective: f64,
     /// Sum of the violations of the program's rows.
     pub violation: f64,

@@ -1,5 +1,7 @@
 //! A matrix stored by the entries of its rows.
 
+#![warn(missing_docs)]
+
 use nalgebra::{DMatrix, DVector};
 use smallvec::{SmallVec, smallvec};
 use std::ops::{Index, IndexMut, Mul};

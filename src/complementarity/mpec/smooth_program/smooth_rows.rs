@@ -40,6 +40,7 @@ pub enum SmoothProgramRow {
 }
 
 /// Multipliers of the problem's own constraints; signs as in `quadratic_program::interior_point`.
+#[warn(missing_docs)]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Multipliers {
     /// One per equality, free in sign.

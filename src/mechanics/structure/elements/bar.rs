@@ -199,6 +199,7 @@ impl FiniteElement for Bar {
 }
 
 /// How a bar's strain is measured; `λ = L/L0`.
+#[warn(missing_docs)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]

@@ -1,0 +1,134 @@
+//! Bars and springs.
+
+use crate::mechanics::structure::elements::bar::Strain;
+use serde::{Deserialize, Serialize};
+
+/// An elastic element: a bar or a spring.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Element {
+    /// A pin-jointed bar, geometrically exact.
+    Bar {
+        /// Two different node names.
+        #[cfg_attr(feature = "server", schema(min_items = 2, max_items = 2))]
+        nodes: Vec<String>,
+        /// EA (force), positive.
+        #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0))]
+        axial_stiffness: f64,
+        /// Unstressed length; the distance of the nodes when absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0))]
+        rest_length: Option<f64>,
+        /// Axial force (tension positive) added to the elastic one.
+        #[serde(default)]
+        prestress: f64,
+        /// Measure of the bar's strain, `engineering` when absent.
+        #[serde(default)]
+        strain: Strain,
+        /// By which results and `analysis.record` refer to the element; one element has it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        name: Option<String>,
+    },
+    /// A constant stiffness between one node and the ground, or between two nodes; it does not follow rotation.
+    Spring {
+        /// One or two node names.
+        #[cfg_attr(feature = "server", schema(min_items = 1, max_items = 2))]
+        nodes: Vec<String>,
+        /// Symmetric, `dimension` rows of `dimension` numbers (force per length).
+        #[cfg_attr(feature = "server", schema(min_items = 2, max_items = 3))]
+        stiffness: Vec<Vec<f64>>,
+        /// By which results and `analysis.record` refer to the element; one element has it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        name: Option<String>,
+    },
+}
+
+impl Element {
+    /// A bar between two nodes, of axial stiffness EA (force, positive), unstressed where its nodes are given.
+    ///
+    /// ```
+    /// use arcslip::{Element, Strain};
+    ///
+    /// let bar = Element::bar("pin", "tip", 2.0e6).with_prestress(150.0).with_strain(Strain::Green);
+    /// let spring = Element::spring_between("tip", "anchor", [[1.0, -0.8], [-0.8, 1.0]]);
+    /// assert_eq!(bar.nodes(), ["pin", "tip"]);
+    /// assert_eq!(spring.nodes(), ["tip", "anchor"]);
+    /// ```
+    pub fn bar(from: impl Into<String>, to: impl Into<String>, axial_stiffness: f64) -> Self {
+        Self::Bar {
+            nodes: vec![from.into(), to.into()],
+            axial_stiffness,
+            rest_length: None,
+            prestress: 0.0,
+            strain: Strain::default(),
+            name: None,
+        }
+    }
+
+    /// A spring between a node and the ground; `stiffness` is symmetric, force per length.
+    pub fn spring<const DIMENSION: usize>(node: impl Into<String>, stiffness: [[f64; DIMENSION]; DIMENSION]) -> Self {
+        Self::Spring { nodes: vec![node.into()], stiffness: rows(stiffness), name: None }
+    }
+
+    /// A spring between two nodes; `stiffness` is symmetric, force per length.
+    pub fn spring_between<const DIMENSION: usize>(
+        from: impl Into<String>,
+        to: impl Into<String>,
+        stiffness: [[f64; DIMENSION]; DIMENSION],
+    ) -> Self {
+        Self::Spring { nodes: vec![from.into(), to.into()], stiffness: rows(stiffness), name: None }
+    }
+
+    /// The bar with another unstressed length than the distance of its nodes; a spring as it is.
+    #[must_use]
+    pub fn with_rest_length(mut self, length: f64) -> Self {
+        if let Self::Bar { rest_length, .. } = &mut self {
+            *rest_length = Some(length);
+        }
+        self
+    }
+
+    /// The bar with an axial force (tension positive) added to the elastic one; a spring as it is.
+    #[must_use]
+    pub fn with_prestress(mut self, force: f64) -> Self {
+        if let Self::Bar { prestress, .. } = &mut self {
+            *prestress = force;
+        }
+        self
+    }
+
+    /// The bar with another measure of its strain than the engineering strain; a spring as it is.
+    #[must_use]
+    pub fn with_strain(mut self, measure: Strain) -> Self {
+        if let Self::Bar { strain, .. } = &mut self {
+            *strain = measure;
+        }
+        self
+    }
+
+    /// The element with a name, by which results and [`Record`](crate::model::request::Record) refer to it.
+    #[must_use]
+    pub fn with_name(mut self, given: impl Into<String>) -> Self {
+        let (Self::Bar { name, .. } | Self::Spring { name, .. }) = &mut self;
+        *name = Some(given.into());
+        self
+    }
+
+    /// The name by which results refer to the element, where it has one.
+    pub fn name(&self) -> Option<&str> {
+        let (Self::Bar { name, .. } | Self::Spring { name, .. }) = self;
+        name.as_deref()
+    }
+
+    /// Names of the nodes that the element joins; one where the other end is the ground.
+    pub fn nodes(&self) -> &[String] {
+        match self {
+            Self::Bar { nodes, .. } | Self::Spring { nodes, .. } => nodes,
+        }
+    }
+}
+
+fn rows<const DIMENSION: usize>(matrix: [[f64; DIMENSION]; DIMENSION]) -> Vec<Vec<f64>> {
+    matrix.iter().map(|row| row.to_vec()).collect()
+}

@@ -1,0 +1,111 @@
+//! The model as a whole.
+
+use crate::model::request::structure::component::Component;
+use crate::model::request::structure::element::Element;
+use crate::model::request::structure::obstacle::{Contact, Obstacle};
+use crate::model::request::structure::stage::Stage;
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+
+/// A structure, its obstacles and its load history.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Model {
+    /// A title.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// 2 or 3.
+    #[cfg_attr(feature = "server", schema(minimum = 2, maximum = 3))]
+    pub dimension: usize,
+    /// Node name to coordinates (length, `dimension` of them).
+    pub nodes: IndexMap<String, Vec<f64>>,
+    /// Node name to the components held.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub supports: IndexMap<String, Vec<Component>>,
+    /// Bars and springs.
+    pub elements: Vec<Element>,
+    /// Obstacle name to obstacle.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub obstacles: IndexMap<String, Obstacle>,
+    /// Which nodes may touch which obstacles.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contacts: Vec<Contact>,
+    /// Run in order; each starts at load factor 0 and holds what earlier ones reached.
+    #[cfg_attr(feature = "server", schema(min_items = 1))]
+    pub stages: Vec<Stage>,
+}
+
+impl Model {
+    /// A model without nodes, in the plane (2) or in space (3).
+    ///
+    /// ```
+    /// use arcslip::{Component, Element, EquilibriumProblem, Model, Obstacle, Stage};
+    ///
+    /// let model = Model::new(2)
+    ///     .node("pin", [0.0, 1.0])
+    ///     .node("tip", [-1.5, 0.0])
+    ///     .support("pin", [Component::X, Component::Y])
+    ///     .element(Element::bar("pin", "tip", 1.0))
+    ///     .obstacle("floor", Obstacle::plane([0.0, 0.0], [0.0, 1.0]))
+    ///     .contact("tip", "floor", 0.3)
+    ///     .stage(Stage::new("push").force("tip", [1.0, 0.0]));
+    /// let problem = EquilibriumProblem::new(model)?;
+    /// assert_eq!(problem.plan().unknowns, 2);
+    /// # Ok::<(), arcslip::InputErrors>(())
+    /// ```
+    pub fn new(dimension: usize) -> Self {
+        Self {
+            name: None,
+            dimension,
+            nodes: IndexMap::new(),
+            supports: IndexMap::new(),
+            elements: Vec::new(),
+            obstacles: IndexMap::new(),
+            contacts: Vec::new(),
+            stages: Vec::new(),
+        }
+    }
+
+    /// With a node at its coordinates (length), in place of one of the same name.
+    #[must_use]
+    pub fn node(mut self, name: impl Into<String>, coordinates: impl Into<Vec<f64>>) -> Self {
+        self.nodes.insert(name.into(), coordinates.into());
+        self
+    }
+
+    /// With the components of a node that are held, in place of those given before.
+    #[must_use]
+    pub fn support(mut self, node: impl Into<String>, components: impl Into<Vec<Component>>) -> Self {
+        self.supports.insert(node.into(), components.into());
+        self
+    }
+
+    /// With one more bar or spring.
+    #[must_use]
+    pub fn element(mut self, element: Element) -> Self {
+        self.elements.push(element);
+        self
+    }
+
+    /// With an obstacle, in place of one of the same name.
+    #[must_use]
+    pub fn obstacle(mut self, name: impl Into<String>, obstacle: Obstacle) -> Self {
+        self.obstacles.insert(name.into(), obstacle);
+        self
+    }
+
+    /// With one more contact: see [`Contact::new`].
+    #[must_use]
+    pub fn contact(mut self, node: impl Into<String>, obstacle: impl Into<String>, friction: f64) -> Self {
+        self.contacts.push(Contact::new(node, obstacle, friction));
+        self
+    }
+
+    /// With one more stage, after those given before.
+    #[must_use]
+    pub fn stage(mut self, stage: Stage) -> Self {
+        self.stages.push(stage);
+        self
+    }
+}

@@ -1,0 +1,82 @@
+//! Rigid obstacles, and contacts of nodes with them.
+
+use serde::{Deserialize, Serialize};
+
+/// A rigid obstacle that nodes may touch.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Obstacle {
+    /// A half-space; `normal` points into the free side and need not have unit length.
+    Plane {
+        /// A point on the plane (length, `dimension` coordinates).
+        point: Vec<f64>,
+        /// Towards the free side (`dimension` components), of any length but 0.
+        normal: Vec<f64>,
+    },
+    /// A circle in 2D, a sphere in 3D.
+    Ball {
+        /// Centre (length, `dimension` coordinates).
+        center: Vec<f64>,
+        /// Length, positive.
+        #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0))]
+        radius: f64,
+        /// Where nodes are free, `outside` when absent.
+        #[serde(default)]
+        side: Side,
+    },
+}
+
+impl Obstacle {
+    /// A plane through a point; `normal` points into the free side and need not have unit length.
+    ///
+    /// ```
+    /// use arcslip::{Obstacle, Side};
+    ///
+    /// let floor = Obstacle::plane([0.0, 0.0], [0.0, 1.0]);
+    /// let bowl = Obstacle::ball([0.0, 2.0], 2.0, Side::Inside);
+    /// assert_ne!(floor, bowl);
+    /// ```
+    pub fn plane(point: impl Into<Vec<f64>>, normal: impl Into<Vec<f64>>) -> Self {
+        Self::Plane { point: point.into(), normal: normal.into() }
+    }
+
+    /// A circle in 2D, a sphere in 3D, of positive radius (length); nodes stay on the given side of it.
+    pub fn ball(center: impl Into<Vec<f64>>, radius: f64, side: Side) -> Self {
+        Self::Ball { center: center.into(), radius, side }
+    }
+}
+
+/// On which side of a ball the nodes are free.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Nodes stay out of the ball.
+    #[default]
+    Outside,
+    /// Nodes stay in the ball.
+    Inside,
+}
+
+/// One node against one obstacle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Contact {
+    /// Name of the node.
+    pub node: String,
+    /// Name of the obstacle.
+    pub obstacle: String,
+    /// Coulomb's coefficient, 0 or more; 0 is frictionless.
+    #[serde(default)]
+    #[cfg_attr(feature = "server", schema(minimum = 0.0))]
+    pub friction: f64,
+}
+
+impl Contact {
+    /// A node against an obstacle with Coulomb's coefficient of friction (dimensionless, 0 or more).
+    pub fn new(node: impl Into<String>, obstacle: impl Into<String>, friction: f64) -> Self {
+        Self { node: node.into(), obstacle: obstacle.into(), friction }
+    }
+}

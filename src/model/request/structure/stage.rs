@@ -1,0 +1,174 @@
+//! Stages of the load, and where they end.
+
+use crate::model::request::structure::component::Component;
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+
+/// A stage of the load history: a pattern of forces, prescribed displacements and motions of obstacles, multiplied by the
+/// load factor, which the path determines.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Stage {
+    /// Name, by which increments tell the stage they belong to.
+    pub name: String,
+    /// Node name to force; multiplied by the load factor.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub forces: IndexMap<String, Vec<f64>>,
+    /// Node name to prescribed displacement of its supported components (length; zero on free ones); multiplied by the
+    /// load factor.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub displacements: IndexMap<String, Vec<f64>>,
+    /// Obstacle name to translation (length); multiplied by the load factor.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub obstacle_motion: IndexMap<String, Vec<f64>>,
+    /// Where the stage ends; absent: it goes on to `max_increments`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<Until>,
+}
+
+impl Stage {
+    /// A stage without load and without end.
+    ///
+    /// ```
+    /// use arcslip::{Component, DisplacementBound, Stage};
+    ///
+    /// let stage = Stage::new("push")
+    ///     .force("tip", [1.0, 0.0])
+    ///     .until_load_above(2.0)
+    ///     .until_displacement(DisplacementBound::above("tip", Component::X, 0.5));
+    /// assert_eq!(stage.until.unwrap().load_above, Some(2.0));
+    /// ```
+    pub fn new(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            forces: IndexMap::new(),
+            displacements: IndexMap::new(),
+            obstacle_motion: IndexMap::new(),
+            until: None,
+        }
+    }
+
+    /// With a force on a node (`dimension` components), in place of one given before.
+    #[must_use]
+    pub fn force(mut self, node: impl Into<String>, force: impl Into<Vec<f64>>) -> Self {
+        self.forces.insert(node.into(), force.into());
+        self
+    }
+
+    /// With a prescribed displacement of a supported node (length, `dimension` components), in place of one given before.
+    #[must_use]
+    pub fn displacement(mut self, node: impl Into<String>, displacement: impl Into<Vec<f64>>) -> Self {
+        self.displacements.insert(node.into(), displacement.into());
+        self
+    }
+
+    /// With a translation of an obstacle (length, `dimension` components), in place of one given before.
+    #[must_use]
+    pub fn obstacle_motion(mut self, obstacle: impl Into<String>, translation: impl Into<Vec<f64>>) -> Self {
+        self.obstacle_motion.insert(obstacle.into(), translation.into());
+        self
+    }
+
+    /// Ending where the load factor reaches a value above 0 from below.
+    #[must_use]
+    pub fn until_load_above(self, load_factor: f64) -> Self {
+        self.ending(|until| until.load_above = Some(load_factor))
+    }
+
+    /// Ending where the load factor reaches a value below 0 from above.
+    #[must_use]
+    pub fn until_load_below(self, load_factor: f64) -> Self {
+        self.ending(|until| until.load_below = Some(load_factor))
+    }
+
+    /// Ending where a displacement reaches a value.
+    #[must_use]
+    pub fn until_displacement(self, bound: DisplacementBound) -> Self {
+        self.ending(|until| until.displacement = Some(bound))
+    }
+
+    /// Ending at the limit point of this number, counted from 1 along the stage.
+    #[must_use]
+    pub fn until_limit_points(self, number: u64) -> Self {
+        self.ending(|until| until.limit_points = Some(number))
+    }
+
+    /// Ending at the contact change of this number, counted from 1 along the stage.
+    #[must_use]
+    pub fn until_contact_changes(self, number: u64) -> Self {
+        self.ending(|until| until.contact_change = Some(number))
+    }
+
+    /// Ending after this many increments of the stage.
+    #[must_use]
+    pub fn until_increments(self, number: u64) -> Self {
+        self.ending(|until| until.increments = Some(number))
+    }
+
+    fn ending(mut self, set: impl FnOnce(&mut Until)) -> Self {
+        set(self.until.get_or_insert_default());
+        self
+    }
+}
+
+/// Ends of a stage; the first that is met ends it, and it ends exactly there.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Until {
+    /// The load factor reaches this from below; above 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0))]
+    pub load_above: Option<f64>,
+    /// The load factor reaches this from above; below 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "server", schema(exclusive_maximum = 0.0))]
+    pub load_below: Option<f64>,
+    /// A displacement reaches a value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub displacement: Option<DisplacementBound>,
+    /// This many limit points of the stage, smooth and nonsmooth.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "server", schema(minimum = 1))]
+    pub limit_points: Option<u64>,
+    /// This many contact changes of the stage.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "server", schema(minimum = 1))]
+    pub contact_change: Option<u64>,
+    /// This many increments of the stage.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "server", schema(minimum = 1))]
+    pub increments: Option<u64>,
+}
+
+/// A displacement reaches a value from below (`above`) or from above (`below`); exactly one of the two is given.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct DisplacementBound {
+    /// Name of the node.
+    pub node: String,
+    /// Direction of the displacement.
+    pub component: Component,
+    /// Length, above 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0))]
+    pub above: Option<f64>,
+    /// Length, below 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "server", schema(exclusive_maximum = 0.0))]
+    pub below: Option<f64>,
+}
+
+impl DisplacementBound {
+    /// The displacement reaches a value above 0 (length) from below.
+    pub fn above(node: impl Into<String>, component: Component, value: f64) -> Self {
+        Self { node: node.into(), component, above: Some(value), below: None }
+    }
+
+    /// The displacement reaches a value below 0 (length) from above.
+    pub fn below(node: impl Into<String>, component: Component, value: f64) -> Self {
+        Self { node: node.into(), component, above: None, below: Some(value) }
+    }
+}
