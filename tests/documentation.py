@@ -13,6 +13,7 @@ the exit status is 1 if there are mistakes, and all of them are listed. The mark
     text           the output of the `sh` block before it
     text shown     is not compared
     json model     a request that `arcslip check` accepts
+    json model F   that, too; the commands find it as the file F
     json, toml, python    can be read
     javascript     is not checked
     rust           is a test of `cargo test --doc`; only in the chapter of the library
@@ -62,7 +63,8 @@ START_TIME = 300
 
 FENCE = re.compile(r"^( *)(`{3,}|~{3,})(.*)$")
 RUN = re.compile(r"^sh( server)?(?: status=(\d+))?$")
-OTHER_MARKS = {"sh shown", "text", "text shown", "json", "json model", "toml", "python", "javascript", "rust"}
+MODEL = re.compile(r"^json model(?: ([\w-]+\.json))?$")
+OTHER_MARKS = {"sh shown", "text", "text shown", "json", "toml", "python", "javascript", "rust"}
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^()\s]+)\)")
 HEADING = re.compile(r"^(#{1,6}) +(.*?)(?: +#+)?$")
 MEASURED = re.compile(r"Measured by `([^`]+)`, ([^`]+?), (\d{4}-\d\d-\d\d)\.")
@@ -142,7 +144,7 @@ def check_form(chapter):
             if not before:
                 chapter.mistake(number, "an indented block has no mark: use ```")
     for block in chapter.blocks:
-        if not RUN.match(block.mark) and block.mark not in OTHER_MARKS:
+        if not RUN.match(block.mark) and not MODEL.match(block.mark) and block.mark not in OTHER_MARKS:
             chapter.mistake(block.line, f"unknown mark of a block: `{block.mark}`")
         if block.mark == "rust" and chapter.name != LIBRARY:
             chapter.mistake(block.line, f"Rust stands in the chapter `{LIBRARY}`, where it is tested")
@@ -219,7 +221,7 @@ def check_measured(chapter):
 def check_data(chapter, program):
     for block in chapter.blocks:
         try:
-            if block.mark in ("json", "json model"):
+            if block.mark == "json" or MODEL.match(block.mark):
                 json.loads(block.text)
             elif block.mark == "toml":
                 tomllib.loads(block.text)
@@ -228,7 +230,7 @@ def check_data(chapter, program):
         except (ValueError, SyntaxError) as error:
             chapter.mistake(block.line, f"cannot be read: {error}")
             continue
-        if block.mark == "json model":
+        if MODEL.match(block.mark):
             checked = subprocess.run([program, "check", "-"], input=block.text, text=True, capture_output=True)
             if checked.returncode != 0:
                 chapter.mistake(block.line, f"is no model:\n{checked.stderr or checked.stdout}")
@@ -264,6 +266,13 @@ def run_blocks(chapter, program):
         folder = pathlib.Path(name)
         work = folder / "work"
         work.mkdir()
+        if chapter.name == "README":
+            # Its commands are those of a reader in the repository.
+            (work / "tests").symlink_to(ROOT / "tests")
+        for block in chapter.blocks:
+            model = MODEL.match(block.mark)
+            if model and model[1]:
+                (work / model[1]).write_text(block.text, encoding="utf-8")
         script = ["set -uo pipefail"]
         for number, block in enumerate(runs):
             (folder / f"{number}.sh").write_text(block.text, encoding="utf-8")
