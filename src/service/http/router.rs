@@ -62,7 +62,6 @@ pub fn router(service: Service) -> serde_json::Result<Router> {
     let limits = service.jobs.settings.limits;
     let (access, jobs) = (service.access.clone(), service.jobs.clone());
     let without = CallsWithoutParameters::of(&description);
-    dashboard::prepare();
     let description: Arc<str> = document::finish(description, &limits, access.asks_tokens())?.into();
     let routes = routes
         .route_layer(from_fn_with_state(without, parameters::refuse_unknown))
