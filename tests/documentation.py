@@ -12,7 +12,7 @@ the exit status is 1 if there are mistakes, and all of them are listed. The mark
     sh shown       is not run
     text           the output of the `sh` block before it
     text shown     is not compared
-    json model     a request that `arcslip check` accepts
+    json model     a request that the program accepts: `check`, or `sweep` or `study` where it has that member
     json model F   that, too; the commands find it as the file F
     json, toml, python    can be read
     javascript     is not checked
@@ -220,9 +220,10 @@ def check_measured(chapter):
 
 def check_data(chapter, program):
     for block in chapter.blocks:
+        data = None
         try:
             if block.mark == "json" or MODEL.match(block.mark):
-                json.loads(block.text)
+                data = json.loads(block.text)
             elif block.mark == "toml":
                 tomllib.loads(block.text)
             elif block.mark == "python":
@@ -231,7 +232,8 @@ def check_data(chapter, program):
             chapter.mistake(block.line, f"cannot be read: {error}")
             continue
         if MODEL.match(block.mark):
-            checked = subprocess.run([program, "check", "-"], input=block.text, text=True, capture_output=True)
+            command = next((name for name in ("sweep", "study") if name in data), "check")
+            checked = subprocess.run([program, command, "-"], input=block.text, text=True, capture_output=True)
             if checked.returncode != 0:
                 chapter.mistake(block.line, f"is no model:\n{checked.stderr or checked.stdout}")
 

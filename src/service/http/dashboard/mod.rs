@@ -1,7 +1,7 @@
 //! The dashboard: a page with scripts and styles that are part of the program, so that it needs no network and no files.
 //!
-//! The page is in `page/`: plain ES modules that use the calls of version 1 and nothing else. [`plotly`] is the plotting
-//! library. Called by [`crate::service::http::router`].
+//! The page is in `page/`: plain ES modules that use the calls of version 1 and nothing else. The plotting library
+//! is in `plotly/`. Called by [`crate::service::http::router`].
 
 mod plotly;
 
