@@ -69,6 +69,8 @@ LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^()\s]+)\)")
 HEADING = re.compile(r"^(#{1,6}) +(.*?)(?: +#+)?$")
 MEASURED = re.compile(r"Measured by `([^`]+)`, ([^`]+?), (\d{4}-\d\d-\d\d)\.")
 TARGET = re.compile(r"--(bench|test) ([\w-]+)")
+# What measures.
+PROGRAMS = {"arcslip", "bash", "cargo", "curl", "ls", "pgbench", "python3", "taskset", "wc"}
 FILE = re.compile(r"(?<![\w./~-])((?:src|tests|openapi|migrations)/[\w./-]*[\w/])")
 
 
@@ -137,6 +139,8 @@ def check_form(chapter):
         is_excused = line.startswith(("|", "Measured by")) or "](" in line or "://" in line
         if len(line) > LINE_LENGTH and not is_excused:
             chapter.mistake(number, f"{len(line)} characters, at most {LINE_LENGTH}")
+        if line.startswith(">"):
+            chapter.mistake(number, "a line that begins with > is a quotation")
         if re.search(r"<[A-Za-z/!]", re.sub(r"`[^`]*`|<(https?://|mailto:)[^>]*>", "", line)):
             chapter.mistake(number, "HTML; put it into `...`")
         if re.match(r"^(\t| {4,})\S", line) and not re.match(r"^\s*([-*|]|\d+\.) ", line):
@@ -213,7 +217,7 @@ def check_measured(chapter):
             except ValueError:
                 chapter.mistake(begin, f"{date} is no day that has been")
             words = [word for word in command.split() if "=" not in word]
-            if not words or words[0] not in {"cargo", "arcslip", "bash", "curl", "ls", "python3", "taskset", "wc"}:
+            if not words or words[0] not in PROGRAMS:
                 chapter.mistake(begin, f"`{command}` is no command")
         paragraph, begin = ([line.strip()], number) if line.strip() else ([], 0)
 
