@@ -1,8 +1,10 @@
-# Build: the README's command.
+# docker build --build-arg ARCSLIP_COMMIT=$(git rev-parse HEAD) --tag arcslip .
 FROM rust:1.95-bookworm AS build
 WORKDIR /arcslip
 COPY . .
-RUN cargo build --release
+# What `arcslip --version` names; the repository is not part of the build.
+ARG ARCSLIP_COMMIT
+RUN ARCSLIP_COMMIT=$ARCSLIP_COMMIT cargo build --release
 
 FROM debian:bookworm-slim
 RUN useradd --system --uid 10001 --no-create-home arcslip && install --directory --owner=arcslip /data

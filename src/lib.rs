@@ -227,3 +227,54 @@ pub mod mpec {
     };
     pub use nalgebra::{DMatrix, DVector};
 }
+
+/// The manual: one module for each chapter, which the service shows at `/manual`.
+///
+/// The texts are in `src/manual`. A chapter that is listed here is in the contents of the service, too, in this order.
+// Chapters are written for the service's pages first, where `[x]` and `<x>` mean nothing else.
+#[allow(rustdoc::bare_urls, rustdoc::broken_intra_doc_links, rustdoc::invalid_html_tags)]
+pub mod manual {
+    /// A chapter of the manual.
+    #[derive(Debug, Clone, Copy)]
+    pub struct Chapter {
+        /// The name of its file, and its place in the address.
+        pub name: &'static str,
+        /// As in its first line.
+        pub title: &'static str,
+        /// Markdown; its first line is the title.
+        pub text: &'static str,
+    }
+
+    macro_rules! chapters {
+        ($($name:ident: $title:literal,)*) => {
+            /// Every chapter, in the order of the contents.
+            pub const CHAPTERS: &[Chapter] = &[$(Chapter {
+                name: stringify!($name),
+                title: $title,
+                text: include_str!(concat!("manual/", stringify!($name), ".md")),
+            },)*];
+
+            // The build script makes the links lead from module to module.
+            $(#[doc = include_str!(concat!(env!("OUT_DIR"), "/manual/", stringify!($name), ".md"))] pub mod $name {})*
+        };
+    }
+
+    chapters! {
+        model: "A model",
+        scenes_and_commands: "Scenes and the command line",
+        results: "Results",
+        method: "The method",
+        library: "The library",
+        http: "The HTTP interface",
+        studies: "Sweeps, studies, explorations",
+        operation: "Operation",
+        many_machines: "Many machines",
+        performance: "Performance",
+        validation: "Validation",
+        penalty_method: "Comparison with the penalty method",
+        limits: "Limits",
+        how_it_is_built: "How it is built",
+        development: "Development",
+        changes: "Changes",
+    }
+}

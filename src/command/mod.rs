@@ -22,9 +22,12 @@ use crate::command::output::outcome::{BAD_INPUT, FAILED, Failure, Outcome};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::process::ExitCode;
 
+/// The version, and the commit that the program is built from.
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("ARCSLIP_COMMIT"), ")");
+
 /// Equilibrium paths of structures with unilateral contact and Coulomb friction.
 #[derive(Debug, Parser)]
-#[command(name = "arcslip", version)]
+#[command(name = "arcslip", version = VERSION)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

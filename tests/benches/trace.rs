@@ -1,7 +1,7 @@
 //! One path of a scene and nothing else, for a profiler: the increments, and the time where that says something.
 //!
-//! `cargo bench --no-default-features --bench trace -- row 100`; the README's table of where the time goes has the commands
-//! for callgrind. `-- row 1 2000` takes the path 2000 times and says the median and the least time.
+//! `cargo bench --no-default-features --bench trace -- row 100`; the manual's chapter on performance has the commands for
+//! callgrind. `-- row 1 2000` takes the path 2000 times and says the median and the least time.
 
 use arcslip::check::scenes::lattice::LatticeArch;
 use arcslip::check::scenes::of_any_size::row_of_bars;

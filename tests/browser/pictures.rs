@@ -1,4 +1,6 @@
-//! The README's pictures of the dashboard. `ARCSLIP_PICTURES=write` puts what this takes in the place of those there are.
+//! The pictures of the dashboard that the README leads to.
+//!
+//! `ARCSLIP_PICTURES=write` puts what this takes in the place of those there are.
 //!
 //! Where there is no chromedriver this test says that it is skipped; with `ARCSLIP_BROWSER=required` it fails there.
 
@@ -46,7 +48,7 @@ async fn the_readmes_pictures_show_what_the_page_shows() {
         browser.ask("document.activeElement.blur()").await;
         let picture = browser.page.screenshot().await.expect("a picture");
         assert!(picture.starts_with(b"\x89PNG") && picture.len() <= LARGEST, "{name}: {} bytes", picture.len());
-        assert!(readme.contains(&format!("({FOLDER}/{name})")), "the README shows {name}");
+        assert!(readme.contains(&format!("({FOLDER}/{name})")), "the README leads to {name}");
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(FOLDER).join(name);
         if std::env::var("ARCSLIP_PICTURES").as_deref() == Ok("write") {
             std::fs::write(&file, &picture).expect("written");

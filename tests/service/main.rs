@@ -20,6 +20,7 @@ mod limits;
 mod listen;
 mod lists;
 mod load;
+mod manual;
 mod measure;
 mod metrics;
 mod plot;

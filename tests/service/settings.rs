@@ -36,6 +36,15 @@ fn serve(folder: &Path, mut command: Command) -> Process {
     Process::start(command)
 }
 
+#[test]
+fn the_version_names_the_commit_that_the_program_is_built_from() {
+    let told = text(&arcslip(&["--version"]).output().expect("the program runs").stdout);
+    let commit = told.strip_prefix(concat!("arcslip ", env!("CARGO_PKG_VERSION"), " (")).expect("name and version");
+    // Development builds are not made anew for each commit.
+    let is_named = |name: &str| name == "development build" || name.bytes().all(|byte| byte.is_ascii_hexdigit());
+    assert!(commit.strip_suffix(")\n").is_some_and(is_named), "{told}");
+}
+
 fn refused(mut command: Command) -> String {
     let output: Output = command.output().expect("the program runs");
     assert_eq!(output.status.code(), Some(2), "{output:?}");

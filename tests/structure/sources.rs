@@ -97,7 +97,7 @@ impl Sources {
             Declared { path: "src/lib.rs".into(), name: String::new(), parent: None, test: false, server: false },
         );
         // A file that was missed would make every measure below look better than it is.
-        for path in texts.keys().filter(|path| *path != "src/main.rs") {
+        for path in texts.keys().filter(|path| !["src/main.rs", "src/build.rs"].contains(&path.as_str())) {
             assert!(sources.files.iter().any(|file| file.path == *path), "{path} is in no module");
         }
         sources

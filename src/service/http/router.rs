@@ -6,7 +6,7 @@ use crate::service::http::calls::{
 };
 use crate::service::http::input::parameters::{self, CallsWithoutParameters};
 use crate::service::http::state::service::Service;
-use crate::service::http::{answer, dashboard, document, request_id};
+use crate::service::http::{answer, dashboard, document, manual, request_id};
 use crate::service::jobs::Limits;
 use axum::middleware::{from_fn, from_fn_with_state};
 use axum::{Router, routing};
@@ -62,12 +62,16 @@ pub fn router(service: Service) -> serde_json::Result<Router> {
     let limits = service.jobs.settings.limits;
     let (access, jobs) = (service.access.clone(), service.jobs.clone());
     let without = CallsWithoutParameters::of(&description);
-    dashboard::prepare();
     let description: Arc<str> = document::finish(description, &limits, access.asks_tokens())?.into();
     let routes = routes
         .route_layer(from_fn_with_state(without, parameters::refuse_unknown))
         .route("/", routing::get(dashboard::index))
         .route("/assets/{*name}", routing::get(dashboard::asset))
+        .route("/manual", routing::get(manual::contents))
+        .route("/manual/", routing::get(manual::contents))
+        .route("/manual/{chapter}", routing::get(manual::chapter))
+        .route("/manual/style.css", routing::get(manual::style))
+        .route("/manual/pictures/{name}", routing::get(manual::picture))
         .route("/openapi.json", routing::get(move || openapi::openapi(description.clone())))
         .with_state(service)
         .merge(SwaggerUi::new("/docs").config(Config::from("/openapi.json")))

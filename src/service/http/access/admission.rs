@@ -13,8 +13,8 @@ use axum::response::{IntoResponse, Response};
 use std::net::SocketAddr;
 
 /// Public addresses: pages without data of users, and probes.
-const PUBLIC: [&str; 5] = ["/", "/docs", "/openapi.json", "/healthz", "/readyz"];
-const PUBLIC_FOLDERS: [&str; 2] = ["/docs/", "/assets/"];
+const PUBLIC: [&str; 6] = ["/", "/docs", "/manual", "/openapi.json", "/healthz", "/readyz"];
+const PUBLIC_FOLDERS: [&str; 3] = ["/docs/", "/manual/", "/assets/"];
 
 /// Passes a request on with its [`Caller`], or answers why it is refused.
 pub async fn admit(State(access): State<Access>, mut request: Request, next: Next) -> Response {
@@ -101,13 +101,24 @@ mod tests {
 
     #[test]
     fn what_is_not_public_needs_a_token() {
-        for public in
-            ["/", "/assets/main.js", "/docs", "/docs/", "/docs/swagger-ui.css", "/openapi.json", "/healthz", "/readyz"]
-        {
+        for public in [
+            "/",
+            "/assets/main.js",
+            "/docs",
+            "/docs/",
+            "/docs/swagger-ui.css",
+            "/manual",
+            "/manual/model",
+            "/openapi.json",
+            "/healthz",
+            "/readyz",
+        ] {
             assert_eq!(needed(&Method::GET, public), None, "{public}");
             assert_eq!(needed(&Method::POST, public), Some(Scope::Submit), "{public}");
         }
-        for path in ["/v1/jobs", "/metrics", "//", "/docsx", "/assets", "/v1/docs/", "/nothing", "/healthz/", ""] {
+        for path in
+            ["/v1/jobs", "/metrics", "//", "/docsx", "/manuals", "/assets", "/v1/docs/", "/nothing", "/healthz/", ""]
+        {
             assert_eq!(needed(&Method::GET, path), Some(Scope::Read), "{path}");
         }
         for method in [Method::POST, Method::DELETE, Method::PUT, Method::PATCH, Method::OPTIONS] {

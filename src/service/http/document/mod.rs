@@ -45,6 +45,7 @@ const TOKEN: &str = "token";
 #[derive(OpenApi)]
 #[openapi(
     info(title = "arcslip"),
+    external_docs(url = "/manual", description = "The manual: models, method, results, operation"),
     components(schemas(Document)),
     tags(
         (name = JOBS, description = "Paths to be traced"),
