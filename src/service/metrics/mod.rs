@@ -1,6 +1,6 @@
 //! The metrics of the service, as text for Prometheus.
 //!
-//! [`work`] has the metrics of jobs, [`streams`] of streams, [`requests`] of calls, [`process`] of this process. Values that
+//! `work` has the metrics of jobs, `streams` of streams, `requests` of calls, `process` of this process. Values that
 //! are read at the time of a request are passed in as a [`Reading`]. Labels are few and bounded: statuses, kinds of write,
 //! routes of calls; never an id. `jobs` and `http` record the metrics; this module depends neither on them nor on the store.
 

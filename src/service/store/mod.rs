@@ -2,8 +2,8 @@
 //!
 //! [`Store`] is the interface: its callers know no SQL, and its implementation knows neither HTTP nor the path tracer.
 //! [`record`](contract::record) has the stored records, [`signals`](contract::signals) wakes readers after a change and
-//! `announcements` tells other processes. [`sql`] is the implementation over both engines, [`sqlite`] (a file on this machine)
-//! and [`postgres`] (a server that many machines share); [`location`](contract::location) selects the engine, [`faults`]
+//! `announcements` tells other processes. `sql` is the implementation over both engines, `sqlite` (a file on this machine)
+//! and `postgres` (a server that many machines share); `location` selects the engine, `faults`
 //! classifies its errors. Called by `jobs`, which writes, and by `http`, which reads.
 
 pub mod contract;

@@ -1,8 +1,8 @@
 //! Pictures, as SVG.
 //!
-//! [`result`] draws load against displacement, [`study`] error against run time (or the varied setting), [`sweep`] limit load against
-//! the varied parameters; [`findings`] is the common interface of the latter two. [`shapes`] has the drawing primitives,
-//! [`chart`] the chart of two of them, [`axis`] ranges and tick texts, [`labels`] places of letters. Called by `command` and `http`;
+//! `result` draws load against displacement, `study` error against run time (or the varied setting), `sweep` limit load against
+//! the varied parameters; `findings` is the common interface of the latter two. `shapes` has the drawing primitives,
+//! `chart` the chart of two of them, `axis` ranges and tick texts, `labels` places of letters. Called by `command` and `http`;
 //! knows `result`, `model`, `studies` and `sweeps`.
 
 pub(crate) mod axis;

@@ -1,4 +1,4 @@
-//! The OpenAPI description: collected from the calls and completed with what all calls share; [`operations`] completes each
+//! The OpenAPI description: collected from the calls and completed with what all calls share; `operations` completes each
 //! operation.
 
 pub(crate) mod operations;

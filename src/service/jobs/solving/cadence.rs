@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 /// At most one part in this many of the solver's time is spent on checkpoints.
 const SHARE: u32 = 20;
 
-/// Schedules checkpoints: each at least a given time after the previous one, and at least [`SHARE`] times the time that the
+/// Schedules checkpoints: each at least a given time after the previous one, and at least `SHARE` times the time that the
 /// previous one took. Small paths make about one per batch; large paths spend a small part of their time on checkpoints.
 #[derive(Debug)]
 pub struct Cadence {

@@ -83,7 +83,7 @@ pub trait Solver: Send + Sync + 'static {
         error_against_time::plan(request)
     }
 
-    /// Runs a study; `done` are its runs so far, see [`error_against_time::run`].
+    /// Runs a study; `done` are its runs so far, see `error_against_time::run`.
     fn study(
         &self,
         request: &StudyRequest,

@@ -1,7 +1,7 @@
 //! Signals that wake readers as soon as this process has stored something.
 //!
 //! A signal says that the store has changed. It carries the lines stored last, so that many readers of a job do not all read
-//! the same rows. Changes of other processes are signalled, too, if the engine transmits [`Announcements`]; these may be
+//! the same rows. Changes of other processes are signalled, too, if the engine transmits `Announcements`; these may be
 //! lost, so that readers also poll the store from time to time.
 
 use crate::service::store::contract::announcements::Announcements;
