@@ -63,18 +63,20 @@ fn watched(path: PathBuf) -> Option<PathBuf> {
     Some(path)
 }
 
-/// A chapter whose links lead to the modules of the other chapters, and whose pictures, which are not part of the crate's
-/// documentation, are named.
+/// A chapter whose links lead to the modules of the other chapters, whose pictures, which are not part of the crate's
+/// documentation, are named, and whose blocks have no marks but their language.
 fn for_rustdoc(text: &str) -> String {
     let mut lines = Vec::new();
     let mut is_code = false;
     for line in text.lines() {
-        is_code ^= line.starts_with("```");
+        let is_fence = line.starts_with("```");
         lines.push(match line.strip_prefix("![").and_then(|rest| rest.split_once("](")) {
-            Some((words, _)) if !is_code => format!("*Picture: {words}*"),
+            _ if is_fence => line.split(' ').next().unwrap_or_default().to_owned(),
             _ if is_code => line.to_owned(),
-            _ => with_links(line),
+            Some((words, _)) => format!("*Picture: {words}*"),
+            None => with_links(line),
         });
+        is_code ^= is_fence;
     }
     lines.join("\n") + "\n"
 }
