@@ -30,6 +30,11 @@ impl NodalValues {
         Self { places: Arc::clone(&self.places), values }
     }
 
+    /// Of the same nodes, with other components, node by node.
+    pub(crate) fn with_components(&self, components: Vec<f64>) -> Self {
+        Self { places: Arc::clone(&self.places), values: components }
+    }
+
     /// Nodes.
     pub fn len(&self) -> usize {
         self.places.len()

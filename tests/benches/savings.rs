@@ -9,7 +9,9 @@ use arcslip::check::judged::JudgedPath;
 use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
 use arcslip::model::input::limits::MAX_OBSTACLES;
-use arcslip::model::request::{Contact, Obstacle, Record, RecordedContacts, Side};
+use arcslip::model::request::{
+    Contact, ForceRange, Obstacle, Record, RecordedContacts, RecordedElements, RecordedSupports, Side,
+};
 use arcslip::resources::cancel::CancelFlag;
 use serde_json::json;
 use std::time::Instant;
@@ -49,7 +51,14 @@ fn main() {
     for name in ["one-bar-truss", "arch-type-truss"] {
         let mut recorded = scene(name);
         let contacts = Some(RecordedContacts::Named(Vec::new()));
-        recorded.analysis.record = Some(Record { nodes: Some(Vec::new()), contacts, every: 1_000, directions: false });
+        recorded.analysis.record = Some(Record {
+            nodes: Some(Vec::new()),
+            contacts,
+            elements: Some(RecordedElements::Range(ForceRange::None)),
+            supports: Some(RecordedSupports::Range(ForceRange::None)),
+            every: 1_000,
+            directions: false,
+        });
         compare(name, "outputs (record)", &recorded, &scene(name));
     }
 }

@@ -34,8 +34,8 @@ fn a_bar_its_pin_and_its_floor_have_the_forces_of_the_closed_form() {
         close(contact.reaction[0], contact.tangential_reaction[0], 0.0, "the floor's tangent is x");
         close(contact.reaction[1], contact.normal_reaction, 0.0, "the floor's normal is y");
         assert_eq!(increment.applied_forces[..], [increment.load_factor, 0.0]);
-        for k in 0..2 {
-            close(pin[k] + contact.reaction[k] + increment.applied_forces[k], 0.0, 1e-13, "sum of the forces");
+        for ((pin, contact), applied) in pin.iter().zip(&contact.reaction).zip(&increment.applied_forces) {
+            close(pin + contact + applied, 0.0, 1e-13, "sum of the forces");
         }
     }
     assert!(increments.len() > 50);

@@ -48,8 +48,9 @@ pub(crate) fn support_reactions(scene: &Scene, row: &RowSource<'_>) -> NodalValu
     }
     let components = recorded.supported_nodes.iter().flat_map(|node| structure.translations_of(*node));
     let held = |freedom: usize| structure.unknown_of[freedom].is_none();
-    let reactions: Vec<f64> = components.map(|freedom| if held(freedom) { unbalanced[freedom] } else { 0.0 }).collect();
-    recorded.no_reactions.scaled(&reactions, scene.plan().force_scale)
+    let force = scene.plan().force_scale;
+    let reaction = |freedom: usize| if held(freedom) { unbalanced[freedom] * force } else { 0.0 };
+    recorded.no_reactions.with_components(components.map(reaction).collect())
 }
 
 /// The sum of the applied forces over the nodes.
