@@ -66,6 +66,13 @@ async fn pages_probes_and_request_ids() {
     assert!(!docs.contains("https://"), "the pages work with no network");
     let script = server.get("/docs/swagger-ui-bundle.js").await;
     assert_eq!(script.status(), StatusCode::OK);
+    assert!(!script.headers().contains_key("content-encoding"), "gzip is for those who accept it");
+    let script = script.text().await.expect("a body");
+    assert!(script.contains("SwaggerUIBundle"));
+    let asked = server.ask(Method::GET, "/docs/swagger-ui-bundle.js").header("accept-encoding", "gzip");
+    let compressed = asked.send().await.expect("an answer");
+    assert_eq!(compressed.headers()["content-encoding"], "gzip");
+    assert!(3 * compressed.bytes().await.expect("a body").len() < script.len());
     let given = server.ask(Method::GET, "/healthz").header("x-request-id", "mine-1").send().await.expect("an answer");
     assert_eq!(given.headers()["x-request-id"], "mine-1");
     let made = server.ask(Method::GET, "/healthz").header("x-request-id", "a b").send().await.expect("an answer");

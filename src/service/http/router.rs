@@ -63,6 +63,7 @@ pub fn router(service: Service) -> serde_json::Result<Router> {
     let (access, jobs) = (service.access.clone(), service.jobs.clone());
     let without = CallsWithoutParameters::of(&description);
     let description: Arc<str> = document::finish(description, &limits, access.asks_tokens())?.into();
+    let docs = Router::from(SwaggerUi::new("/docs").config(Config::from("/openapi.json")));
     let routes = routes
         .route_layer(from_fn_with_state(without, parameters::refuse_unknown))
         .route("/", routing::get(dashboard::index))
@@ -74,7 +75,7 @@ pub fn router(service: Service) -> serde_json::Result<Router> {
         .route("/manual/pictures/{name}", routing::get(manual::picture))
         .route("/openapi.json", routing::get(move || openapi::openapi(description.clone())))
         .with_state(service)
-        .merge(SwaggerUi::new("/docs").config(Config::from("/openapi.json")))
+        .merge(docs.layer(from_fn(answer::gzip::unpack_where_not_accepted)))
         .layer(from_fn_with_state(access.clone(), admission::admit))
         .layer(CatchPanicLayer::custom(answer::problem::from_panic))
         .layer(from_fn(answer::problem::every_error));

@@ -3,14 +3,21 @@
 use crate::service::store::StoreError;
 use crate::service::store::contract::error::Result;
 use crate::service::store::contract::location::Url;
-use sqlx::migrate::Migrator;
+use crate::service::store::sql::migrations::{MigrationFile, migration_files, migrator};
 use sqlx::postgres::{PgConnectOptions, PgConnection, PgSslMode};
 use sqlx::{ConnectOptions, Connection};
 use std::str::FromStr;
 use std::time::Duration;
 use tokio::time::timeout;
 
-static MIGRATIONS: Migrator = sqlx::migrate!("./migrations/postgres");
+const MIGRATIONS: &[MigrationFile] = migration_files![
+    "postgres":
+    "0001_jobs",
+    "0002_sweeps",
+    "0003_summaries",
+    "0004_turns",
+    "0005_counted_losses",
+];
 
 /// In the format of `server_version_num`.
 const OLDEST_SERVER: i32 = 140_000;
@@ -107,13 +114,13 @@ async fn migrate(connection: &mut PgConnection) -> std::result::Result<(), Box<d
             format!("the encoding of the database is {encoding}; a database with ENCODING 'UTF8' is required").into()
         );
     }
-    let mut migrations = Migrator::with_migrations(MIGRATIONS.iter().cloned().collect());
+    let mut migrations = migrator(MIGRATIONS);
     // Migrations of later versions only add to the schema, unless the check below says otherwise.
     migrations.set_ignore_missing(true);
     migrations.run(&mut *connection).await?;
     let least: i64 =
         sqlx::query_scalar("SELECT max(least_version) FROM compatibility").fetch_one(&mut *connection).await?;
-    let known = MIGRATIONS.iter().map(|one| one.version).max().unwrap_or(0);
+    let known = migrations.iter().map(|one| one.version).max().unwrap_or(0);
     if least > known {
         return Err(format!(
             "the database was changed by a later version of this program so that this one cannot use it: it asks for \
@@ -122,4 +129,12 @@ async fn migrate(connection: &mut PgConnection) -> std::result::Result<(), Box<d
         .into());
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn every_migration_is_listed() {
+        crate::service::store::sql::migrations::assert_complete("postgres", super::MIGRATIONS);
+    }
 }

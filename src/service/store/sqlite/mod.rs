@@ -12,6 +12,7 @@ pub(crate) mod intake;
 use crate::service::store::contract::error::{Result, Source};
 use crate::service::store::contract::signals::Signals;
 use crate::service::store::sql::engine::Engine;
+use crate::service::store::sql::migrations::{MigrationFile, migration_files, migrator};
 use crate::service::store::sql::store::SqlStore;
 use crate::service::store::{NewJob, StoreError, Submitted};
 use async_trait::async_trait;
@@ -24,7 +25,20 @@ use sqlx::sqlite::{
 use std::path::Path;
 use std::time::Duration;
 
-static MIGRATIONS: sqlx::migrate::Migrator = sqlx::migrate!("./migrations/sqlite");
+const MIGRATIONS: &[MigrationFile] = migration_files![
+    "sqlite":
+    "0001_jobs_and_increments",
+    "0002_following",
+    "0003_studies",
+    "0004_checkpoints",
+    "0005_limits",
+    "0006_owners",
+    "0007_long_queues",
+    "0008_sweeps",
+    "0009_summaries",
+    "0010_turns",
+    "0011_counted_losses",
+];
 
 const READERS: u32 = 4;
 const BUSY_TIMEOUT: Duration = Duration::from_secs(5);
@@ -72,7 +86,7 @@ impl SqliteEngine {
             )
             .await
             .map_err(|error| StoreError::Open(Box::new(error)))?;
-        MIGRATIONS.run(&writer).await.map_err(|error| StoreError::Open(Box::new(error)))?;
+        migrator(MIGRATIONS).run(&writer).await.map_err(|error| StoreError::Open(Box::new(error)))?;
         let readers = SqlitePoolOptions::new()
             .max_connections(READERS)
             .acquire_timeout(ACQUIRE_TIMEOUT)
@@ -146,6 +160,11 @@ mod tests {
     use crate::service::store::{Batch, LeaseAnswer, Line, NewJob, StoreError, Task};
     use sqlx::{Row, Sqlite};
     use std::time::Duration;
+
+    #[test]
+    fn every_migration_is_listed() {
+        crate::service::store::sql::migrations::assert_complete("sqlite", super::MIGRATIONS);
+    }
 
     /// Acknowledged writes survive a power loss.
     #[tokio::test]

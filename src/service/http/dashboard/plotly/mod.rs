@@ -1,11 +1,10 @@
 //! Plotly's script (MIT licence, see `LICENSE`): `plotly.js.gz`, which `trim.py` makes of the released one.
 
+use crate::service::http::answer::gzip::{takes_gzip, unpacked};
 use crate::service::http::answer::problem::Problem;
 use crate::service::http::answer::tag::Tag;
 use axum::http::{HeaderMap, HeaderValue, header};
 use axum::response::{IntoResponse, Response};
-use flate2::read::GzDecoder;
-use std::io::Read;
 use std::sync::LazyLock;
 use tokio::task::spawn_blocking;
 
@@ -30,11 +29,7 @@ impl Sent {
 static COMPRESSED: LazyLock<Sent> = LazyLock::new(|| Sent::of(include_bytes!("plotly.js.gz")));
 
 /// The script for clients that do not accept gzip, made when the first of them asks.
-static PLAIN: LazyLock<Option<Sent>> = LazyLock::new(|| {
-    let mut plain = Vec::new();
-    GzDecoder::new(COMPRESSED.bytes).read_to_end(&mut plain).ok()?;
-    Some(Sent::of(plain.leak()))
-});
+static PLAIN: LazyLock<Option<Sent>> = LazyLock::new(|| Some(Sent::of(unpacked(COMPRESSED.bytes).ok()?.leak())));
 
 pub async fn script(headers: &HeaderMap) -> Result<Response, Problem> {
     let is_compressed = takes_gzip(headers);
@@ -50,34 +45,9 @@ pub async fn script(headers: &HeaderMap) -> Result<Response, Problem> {
     Ok(answer)
 }
 
-/// Whether the client accepts gzip (`Accept-Encoding`, RFC 9110, section 12.5.3).
-fn takes_gzip(headers: &HeaderMap) -> bool {
-    let values = headers.get_all(header::ACCEPT_ENCODING).iter().filter_map(|value| value.to_str().ok());
-    values.flat_map(|value| value.split(',')).any(|coding| {
-        let mut parts = coding.split(';').map(str::trim);
-        let is_gzip = parts.next().is_some_and(|name| name.eq_ignore_ascii_case("gzip"));
-        let weight = parts.find_map(|parameter| parameter.strip_prefix("q="));
-        is_gzip && weight.is_none_or(|weight| weight.parse::<f32>().is_ok_and(|weight| weight > 0.0))
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn gzip_is_sent_to_those_who_read_it() {
-        let takes = |value: &str| {
-            takes_gzip(&[(header::ACCEPT_ENCODING, value.parse().unwrap())].into_iter().collect::<HeaderMap>())
-        };
-        for yes in ["gzip", "deflate, GZIP;q=0.5", "br;q=1, gzip ; q=1"] {
-            assert!(takes(yes), "{yes}");
-        }
-        for no in ["", "br", "gzip;q=0", "gzip; q=0.0", "xgzip", "gzip;q=x"] {
-            assert!(!takes(no), "{no}");
-        }
-        assert!(!takes_gzip(&HeaderMap::new()));
-    }
 
     #[test]
     fn plotly_is_one_script_without_mathjax_and_quick_to_start() {
