@@ -3,7 +3,9 @@
 use crate::check::judged::JudgedIncrement;
 use crate::command::options::{bounds, input};
 use crate::command::output::outcome::{Failure, Outcome};
-use crate::command::output::written::{is_standard_output, one_on_standard_output, write};
+use crate::command::output::written::{
+    extension, folders_exist, is_standard_output, is_svg, one_on_standard_output, write,
+};
 use crate::model::{JobRequest, Model};
 use crate::output::{Table, json_line};
 use crate::resources::cancel::CancelFlag;
@@ -26,8 +28,9 @@ pub struct Arguments {
     /// Write increments here; `-` is standard output.
     #[arg(long, value_name = "FILE", default_value = "-")]
     out: PathBuf,
-    #[arg(long, value_enum, default_value_t = Format::Ndjson)]
-    format: Format,
+    /// Default: what the extension of `--out` says, `ndjson` where it has none.
+    #[arg(long, value_enum)]
+    format: Option<Format>,
     /// Draw load factor against a displacement here, as an SVG; `-` is standard output.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
@@ -46,8 +49,28 @@ enum Format {
     Csv,
 }
 
+impl Arguments {
+    /// The format that is asked for, or else that of the extension.
+    fn format(&self) -> Result<Format, Failure> {
+        if let Some(format) = self.format {
+            return Ok(format);
+        }
+        match extension(&self.out).as_deref() {
+            None | Some("ndjson" | "jsonl") => Ok(Format::Ndjson),
+            Some("csv") => Ok(Format::Csv),
+            Some(other) => Err(Failure::Input(vec![format!(
+                "--out: the extension `{other}` names no format; `ndjson` and `csv` do, or give --format"
+            )])),
+        }
+    }
+}
+
 pub fn run(arguments: &Arguments) -> Outcome {
-    one_on_standard_output(&[("--out", Some(&arguments.out)), ("--plot", arguments.plot.as_deref())])?;
+    let results = [("--out", Some(arguments.out.as_path())), ("--plot", arguments.plot.as_deref())];
+    one_on_standard_output(&results)?;
+    folders_exist(&results)?;
+    is_svg("--plot", arguments.plot.as_deref())?;
+    let format = arguments.format()?;
     let request = arguments.model.read()?;
     // Checked before the file is opened, so that a mistake does not overwrite an earlier result.
     PathSolver.plan(&request).map_err(input::refused)?;
@@ -55,7 +78,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         eprintln!("explore: the directions not taken are followed by `arcslip serve` only; this traces one path");
     }
     let mut picture = Picture::planned(arguments, &request)?;
-    let mut writer = Writer::open(arguments, &request)?;
+    let mut writer = Writer::open(&arguments.out, format, &request)?;
     let progress = progress_bar(request.analysis.max_increments, !is_standard_output(&arguments.out));
     let mut unwritten = None;
     let report = PathSolver
@@ -119,14 +142,13 @@ struct Writer {
 }
 
 impl Writer {
-    fn open(arguments: &Arguments, request: &JobRequest) -> Result<Self, Failure> {
-        let file = &arguments.out;
+    fn open(file: &Path, format: Format, request: &JobRequest) -> Result<Self, Failure> {
         let to: Box<dyn Write> = if is_standard_output(file) {
             Box::new(std::io::stdout())
         } else {
             Box::new(File::create(file).map_err(|error| Failure::Other(format!("{}: {error}", file.display())))?)
         };
-        Ok(Self { to, format: arguments.format, table: Table::of(request), begun: false })
+        Ok(Self { to, format, table: Table::of(request), begun: false })
     }
 
     /// Writes each increment in one piece, without delay.

@@ -143,3 +143,35 @@ fn names_and_magnitudes_do_not_spoil_the_picture() {
     assert_eq!(count(&texts, "displacement a<&>\"'.\u{fffd} b.y"), 1, "{texts:?}");
     assert!(texts.iter().any(|text| text.starts_with("load factor / 1e-")), "{texts:?}");
 }
+
+#[test]
+fn extensions_say_the_format_and_unknown_ones_are_refused_before_anything_is_traced() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = |out: &str, more: &[&str]| {
+        let place = folder.path().join(out);
+        let mut command = Command::new(env!("CARGO_BIN_EXE_arcslip"));
+        let output = command.args(["solve", "klarbring", "--out"]).arg(&place).args(more).output().expect("it runs");
+        (
+            output.status.code(),
+            String::from_utf8_lossy(&output.stderr).into_owned(),
+            std::fs::read_to_string(place).ok(),
+        )
+    };
+    for (name, more, begins) in [
+        ("path.csv", &[][..], "index,stage,"),
+        ("path.NDJSON", &[], "{\"index\":0,"),
+        ("path", &[], "{\"index\":0,"),
+        ("path.table", &["--format", "csv"], "index,stage,"),
+    ] {
+        let (status, told, written) = run(name, more);
+        assert!(status == Some(0) && written.expect("a file").starts_with(begins), "{name}: {told}");
+    }
+    for (name, more, told_of) in [
+        ("path.xlsx", &[][..], "the extension `xlsx` names no format"),
+        ("nowhere/path.csv", &[], "--out: there is no folder"),
+        ("other.csv", &["--plot", "picture.png"], "pictures are SVG"),
+    ] {
+        let (status, told, written) = run(name, more);
+        assert!(status == Some(2) && told.contains(told_of) && written.is_none(), "{name}: {told}");
+    }
+}

@@ -1,11 +1,11 @@
 //! Writes the findings of `study` and `sweep` in the selected format, and shows their progress.
 
 use crate::command::output::outcome::Failure;
-use crate::command::output::written::{one_on_standard_output, write};
+use crate::command::output::written::{folders_exist, is_svg, one_on_standard_output, write};
 use crate::studies::picture::findings::Findings;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The arguments for the output of findings.
 #[derive(Debug, clap::Args)]
@@ -37,12 +37,8 @@ impl Written {
     /// Two outputs have the same file, or the folder of a file does not exist.
     pub fn check(&self) -> Result<(), Failure> {
         let places = [("--out", Some(self.out.as_path())), ("--plot", self.plot.as_deref())];
-        for (option, place) in places {
-            let folder = place.and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
-            if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-                return Err(Failure::Input(vec![format!("{option}: there is no folder {}", folder.display())]));
-            }
-        }
+        folders_exist(&places)?;
+        is_svg("--plot", self.plot.as_deref())?;
         one_on_standard_output(&places)
     }
 

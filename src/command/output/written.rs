@@ -16,6 +16,33 @@ pub fn write(place: &Path, text: &str) -> Result<(), Failure> {
     std::fs::write(place, text).map_err(|error| Failure::Other(format!("{}: {error}", place.display())))
 }
 
+/// Refuses a file in a folder that does not exist, before anything is traced. Each place is the name of an option and its
+/// value.
+pub fn folders_exist(results: &[(&str, Option<&Path>)]) -> Result<(), Failure> {
+    for (option, place) in results {
+        let folder = place.and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+            return Err(Failure::Input(vec![format!("{option}: there is no folder {}", folder.display())]));
+        }
+    }
+    Ok(())
+}
+
+/// The extension of a file's name in lower case, if it has one.
+pub fn extension(place: &Path) -> Option<String> {
+    place.extension().map(|extension| extension.to_string_lossy().to_lowercase())
+}
+
+/// Refuses a picture whose extension promises another format than SVG.
+pub fn is_svg(option: &str, place: Option<&Path>) -> Result<(), Failure> {
+    match place.and_then(extension) {
+        Some(other) if other != "svg" => {
+            Err(Failure::Input(vec![format!("{option}: pictures are SVG; found the extension `{other}`, give `svg`")]))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Refuses two results on standard output, which would be mixed. Each place is the name of an option and its value.
 pub fn one_on_standard_output(results: &[(&str, Option<&Path>)]) -> Result<(), Failure> {
     let there: Vec<&str> =

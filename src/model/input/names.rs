@@ -33,7 +33,7 @@ pub(crate) fn suggestion_of_all<'a>(unknown: &str, known: impl Iterator<Item = &
 
 fn suggestion_among<'a>(unknown: &str, known: impl Iterator<Item = &'a str> + Clone, most: usize) -> String {
     let known_list = listed_up_to(known.clone(), most);
-    match nearest(unknown, known) {
+    match synonym(unknown, known.clone()).or_else(|| nearest(unknown, known)) {
         Some(name) => format!("; did you mean {}? Known: {known_list}", quoted(name)),
         None => format!("; known: {known_list}"),
     }
@@ -59,6 +59,30 @@ fn listed_up_to<'a>(names: impl Iterator<Item = &'a str>, most: usize) -> String
         (false, 0) => shown.join(", "),
         (false, more) => format!("{} and {more} more", shown.join(", ")),
     }
+}
+
+/// Words of other programs and books, and the names that they have here.
+const SYNONYMS: [(&str, &str); 14] = [
+    ("mu", "friction"),
+    ("coefficient", "friction"),
+    ("friction_coefficient", "friction"),
+    ("type", "kind"),
+    ("ea", "axial_stiffness"),
+    ("axial_rigidity", "axial_stiffness"),
+    ("k", "stiffness"),
+    ("truss", "bar"),
+    ("rod", "bar"),
+    ("sphere", "ball"),
+    ("circle", "ball"),
+    ("fixed", "supports"),
+    ("constraints", "supports"),
+    ("loads", "forces"),
+];
+
+/// The known name for which another program or book has this word.
+fn synonym<'a>(unknown: &str, mut known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let (_, name) = SYNONYMS.iter().find(|(word, _)| unknown.eq_ignore_ascii_case(word))?;
+    known.find(|known| known == name)
 }
 
 /// The most similar name, ignoring case, the first among equals; `None` if no name is similar.
@@ -89,6 +113,9 @@ mod tests {
         assert_eq!(nearest("PLANE", known.into_iter()), Some("plane"));
         assert_eq!(nearest("wedge", known.into_iter()), None);
         assert_eq!(suggestion("x", [].into_iter()), "; known: none");
+        let fields = ["node", "obstacle", "friction"];
+        assert!(suggestion("mu", fields.into_iter()).starts_with("; did you mean `friction`?"));
+        assert!(suggestion("Mu", known.into_iter()).starts_with("; known: "));
     }
 
     #[test]
