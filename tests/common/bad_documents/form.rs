@@ -63,7 +63,7 @@ pub fn wrong_form() -> Vec<BadDocument> {
         at("unknown field", "/modell", json!({}), "did you mean `model`?"),
         at("unknown field of a model", "/model/node", json!({}), "did you mean `nodes`?"),
         at("unknown field of a bar", "/model/elements/0/stiffness", json!(1), "did you mean `axial_stiffness`?"),
-        at("unknown field of a contact", "/model/contacts/0/mu", json!(1), "known: `node`, `obstacle`, `friction`"),
+        at("unknown field of a contact", "/model/contacts/0/mu", json!(1), "did you mean `friction`? Known: `node`"),
         at("unknown field of an analysis", "/analysis/max_increment", json!(1), "did you mean `max_increments`?"),
         at("unknown end", "/model/stages/0/until/load", json!(1), "unknown field `load`"),
         at("unknown element", "/model/elements/0/kind", json!("beam"), "is not a kind of element"),
