@@ -24,16 +24,7 @@ pub fn space_model() -> Make {
 }
 
 fn model(dimension: usize) -> Make {
-    let model = Model {
-        name: None,
-        dimension,
-        nodes: IndexMap::new(),
-        supports: IndexMap::new(),
-        elements: Vec::new(),
-        obstacles: IndexMap::new(),
-        contacts: Vec::new(),
-        stages: Vec::new(),
-    };
+    let model = Model::new(dimension);
     Make(JobRequest { model, analysis: Analysis { max_increments: 20_000, ..Analysis::default() } })
 }
 

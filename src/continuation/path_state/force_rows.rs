@@ -1,4 +1,9 @@
 //! The forces of a row in the user's units: elements, supports, applied loads.
+//!
+//! ```text
+//! reaction of the supports  f_int(u) - s p - h - Σ_c B_cᵀ r_c   at supported components, in the notation of `equilibrium`
+//! applied forces            Σ (s p + h)                         over the nodes
+//! ```
 
 use crate::continuation::path_state::row_conversion::RowSource;
 use crate::continuation::scene::Scene;
