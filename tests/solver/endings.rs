@@ -231,3 +231,32 @@ fn nodes_that_meet_end_the_path_before_their_bar_has_no_direction() {
         assert!(length > 0.0 && length < 1e-4, "{method}: {length}");
     }
 }
+
+/// A square panel with both diagonals, pinned at a corner: pressed on a floor and lifted off it at the load zero, where it
+/// turns freely. Its bars balance one another with or without prestress, and nothing resists the turn in either case.
+#[test]
+fn a_part_under_self_stress_that_turns_freely_is_a_mechanism() {
+    let panel = |prestress: f64| {
+        let bar = |from: &str, to: &str, prestress: f64| json!({"kind": "bar", "nodes": [from, to], "axial_stiffness": 100, "prestress": prestress});
+        let mut elements: Vec<_> =
+            [("a", "b"), ("b", "c"), ("c", "d"), ("d", "a")].map(|(from, to)| bar(from, to, prestress)).into();
+        elements.extend([("a", "c"), ("b", "d")].map(|(from, to)| bar(from, to, -2_f64.sqrt() * prestress)));
+        json!({"model": {
+            "dimension": 2, "nodes": {"a": [0, 0], "b": [1, 0], "c": [1, 1], "d": [0, 1]}, "elements": elements,
+            "supports": {"a": ["x", "y"]},
+            "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}},
+            "contacts": [{"node": "b", "obstacle": "floor", "friction": 0.3}],
+            "stages": [
+                {"name": "press", "forces": {"c": [0, -1]}, "until": {"load_above": 1}},
+                {"name": "lift", "forces": {"c": [0, 1]}}
+            ]
+        }, "analysis": {"max_increments": 50}})
+    };
+    for prestress in [0.0, 1.0, -3.0] {
+        let (increments, report) = trace(&request(&panel(prestress).to_string()));
+        assert_eq!(report.stop_reason, StopReason::Mechanism, "prestress {prestress}");
+        let last = increments.last().expect("an end");
+        assert_eq!(last.point.event.as_deref(), Some("b on floor: reaction zero"), "prestress {prestress}");
+        assert!((last.load_factor - 1.0).abs() < 1e-9 && last.displacements["c"].iter().all(|u| u.abs() < 1e-9));
+    }
+}

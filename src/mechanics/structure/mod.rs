@@ -12,6 +12,7 @@ pub mod assembly;
 pub mod element_list;
 pub mod elements;
 pub mod numbering;
+mod resistance;
 pub mod sparsity;
 
 use assembly::{ElementAt, ElementBlock, ForceBuffer, StiffnessBuffer};
@@ -348,34 +349,8 @@ impl Structure {
     /// The largest change of any element's nodal forces under a displacement rate, over its stiffness times the rate's
     /// size: zero for a motion that no element resists. The stiffness is the largest of the element; for a linear
     /// element it is the largest of the row, since the user prescribes the rows, and a soft row beside a stiff one is
-    /// no round-off.
+    /// no round-off. Of elements that share nodes and move together as a rigid body, the sum of the changes counts.
     pub fn resistance(&self, displacement: &[f64], rate: &[f64]) -> f64 {
-        let size = rate.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
-        if size == 0.0 {
-            return 0.0;
-        }
-        let (mut buffer, mut largest) = (StiffnessBuffer::default(), 0.0_f64);
-        for at in self.elements() {
-            // Row, force and stiffness.
-            let mut changes: Vec<(usize, f64, f64)> = Vec::new();
-            at.alone().each_stiffness(displacement, &mut buffer, &mut |row, column, value| match changes
-                .iter_mut()
-                .find(|(freedom, _, _)| *freedom == row)
-            {
-                Some((_, sum, stiffness)) => {
-                    *sum += value * rate[column];
-                    *stiffness = stiffness.max(value.abs());
-                }
-                None => changes.push((row, value * rate[column], value.abs())),
-            });
-            let stiffest = changes.iter().fold(0.0_f64, |most, (_, _, stiffness)| most.max(*stiffness));
-            for (_, force, of_row) in changes {
-                let stiffness = if at.element.is_linear() { of_row } else { stiffest };
-                if stiffness > 0.0 {
-                    largest = largest.max(force.abs() / (stiffness * size));
-                }
-            }
-        }
-        largest
+        resistance::resistance(self, displacement, rate)
     }
 }
