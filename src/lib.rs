@@ -144,7 +144,7 @@ pub use mechanics::structure::elements::bar::Strain;
 pub use model::request::{
     Analysis, ArcLength, Certificate, Component, Contact, ContactRange, DisplacementBound, Element, ElementReference,
     Events, Explore, ForceRange, JobRequest, LoadSign, Method, Model, Mpec, Obstacle, Record, RecordedContact,
-    RecordedContacts, RecordedElements, RecordedSupports, Regularised, Side, Stage, Until,
+    RecordedContacts, RecordedElements, RecordedSupports, Regularised, Side, Stage, Units, Until,
 };
 pub use model::{InputError, InputErrors, read};
 pub use resources::cancel::CancelFlag;

@@ -1,21 +1,17 @@
 //! `arcslip solve`: traces the path of a model and writes one line per increment as it converges.
 
-use crate::check::judged::JudgedIncrement;
 use crate::command::options::{bounds, input};
 use crate::command::output::outcome::{Failure, Outcome};
-use crate::command::output::written::{
-    extension, folders_exist, is_standard_output, is_svg, one_on_standard_output, write,
-};
+use crate::command::output::path_file::{Format, PathFile};
+use crate::command::output::written::{folders_exist, is_standard_output, is_svg, one_on_standard_output, write};
 use crate::model::{JobRequest, Model};
-use crate::output::{Table, json_line};
 use crate::resources::cancel::CancelFlag;
 use crate::result::increment::Increment;
 use crate::result::stop_reason;
 use crate::service::jobs::{PathSolver, Solver};
 use crate::studies::picture::path::{Against, svg};
 use indicatif::{ProgressBar, ProgressStyle};
-use std::fs::File;
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -41,44 +37,21 @@ pub struct Arguments {
     pub(super) bounds: bounds::Arguments,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Format {
-    /// One JSON object per line.
-    Ndjson,
-    /// A table with named columns.
-    Csv,
-}
-
-impl Arguments {
-    /// The format that is asked for, or else that of the extension.
-    fn format(&self) -> Result<Format, Failure> {
-        if let Some(format) = self.format {
-            return Ok(format);
-        }
-        match extension(&self.out).as_deref() {
-            None | Some("ndjson" | "jsonl") => Ok(Format::Ndjson),
-            Some("csv") => Ok(Format::Csv),
-            Some(other) => Err(Failure::Input(vec![format!(
-                "--out: the extension `{other}` names no format; `ndjson` and `csv` do, or give --format"
-            )])),
-        }
-    }
-}
-
 pub fn run(arguments: &Arguments) -> Outcome {
     let results = [("--out", Some(arguments.out.as_path())), ("--plot", arguments.plot.as_deref())];
     one_on_standard_output(&results)?;
     folders_exist(&results)?;
     is_svg("--plot", arguments.plot.as_deref())?;
-    let format = arguments.format()?;
+    let format = Format::of(arguments.format, &arguments.out)?;
     let request = arguments.model.read()?;
     // Checked before the file is opened, so that a mistake does not overwrite an earlier result.
-    PathSolver.plan(&request).map_err(input::refused)?;
+    let plan = PathSolver.plan(&request).map_err(input::refused)?;
+    plan.warnings.iter().for_each(|warning| eprintln!("warning: {}: {}", warning.pointer, warning.detail));
     if request.analysis.explore.is_some() {
         eprintln!("explore: the directions not taken are followed by `arcslip serve` only; this traces one path");
     }
     let mut picture = Picture::planned(arguments, &request)?;
-    let mut writer = Writer::open(&arguments.out, format, &request)?;
+    let mut writer = PathFile::open(&arguments.out, format, &request)?;
     let progress = progress_bar(request.analysis.max_increments, !is_standard_output(&arguments.out));
     let mut unwritten = None;
     let report = PathSolver
@@ -100,6 +73,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         })
         .map_err(input::refused)?;
     progress.finish_and_clear();
+    let unwritten = unwritten.or_else(|| writer.finish().err());
     if let Some(error) = unwritten {
         return Err(Failure::Other(format!("the path could not be written: {error}")));
     }
@@ -132,38 +106,6 @@ fn progress_bar(max_increments: u64, to_file: bool) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {pos} of at most {len} increments, {elapsed}")
         .unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(max_increments).with_style(style)
-}
-
-struct Writer {
-    to: Box<dyn Write>,
-    format: Format,
-    table: Table,
-    begun: bool,
-}
-
-impl Writer {
-    fn open(file: &Path, format: Format, request: &JobRequest) -> Result<Self, Failure> {
-        let to: Box<dyn Write> = if is_standard_output(file) {
-            Box::new(std::io::stdout())
-        } else {
-            Box::new(File::create(file).map_err(|error| Failure::Other(format!("{}: {error}", file.display())))?)
-        };
-        Ok(Self { to, format, table: Table::of(request), begun: false })
-    }
-
-    /// Writes each increment in one piece, without delay.
-    fn write(&mut self, judged: &JudgedIncrement) -> std::io::Result<()> {
-        let text = match self.format {
-            Format::Ndjson => json_line(judged)? + "\n",
-            Format::Csv => {
-                let header = if self.begun { String::new() } else { self.table.header() };
-                header + &self.table.row(&judged.increment, Some(&judged.measure))
-            }
-        };
-        self.begun = true;
-        self.to.write_all(text.as_bytes())?;
-        self.to.flush()
-    }
 }
 
 /// A picture that is drawn when the path has ended, as the largest displacement is only known then.

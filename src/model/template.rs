@@ -75,9 +75,10 @@ impl Template {
         let JobRequest { model: other, analysis } = differing;
         let mut model = first.model.clone();
         for member in self.members.iter().filter(|member| member.of_model && !member.content.is_common()) {
-            let Model { name, dimension, nodes, supports, elements, obstacles, contacts, stages } = &other;
+            let Model { name, units, dimension, nodes, supports, elements, obstacles, contacts, stages } = &other;
             match member.name.as_str() {
                 "name" => model.name.clone_from(name),
+                "units" => model.units.clone_from(units),
                 "dimension" => model.dimension = *dimension,
                 "nodes" => model.nodes.clone_from(nodes),
                 "supports" => model.supports.clone_from(supports),

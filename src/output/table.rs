@@ -12,7 +12,7 @@ use crate::output::csv::CsvRow;
 use crate::result::increment::{Diagnostics, Increment, PointKind, Status};
 use std::collections::HashSet;
 
-const AXES: [&str; 3] = ["x", "y", "z"];
+pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The columns of one path.
 #[derive(Debug, Clone)]
@@ -181,7 +181,7 @@ impl Table {
 }
 
 /// The counts of the solver's work, with the names of their columns.
-fn counts(diagnostics: &Diagnostics) -> [(&'static str, u64); 8] {
+pub(crate) fn counts(diagnostics: &Diagnostics) -> [(&'static str, u64); 8] {
     [
         ("factorisations", diagnostics.factorisations),
         ("newton_iterations", diagnostics.newton_iterations),
@@ -194,7 +194,7 @@ fn counts(diagnostics: &Diagnostics) -> [(&'static str, u64); 8] {
     ]
 }
 
-fn status(status: Status) -> &'static str {
+pub(crate) fn status(status: Status) -> &'static str {
     match status {
         Status::Free => "free",
         Status::Stick => "stick",
@@ -202,7 +202,7 @@ fn status(status: Status) -> &'static str {
     }
 }
 
-fn point_kind(kind: PointKind) -> &'static str {
+pub(crate) fn point_kind(kind: PointKind) -> &'static str {
     match kind {
         PointKind::Start => "start",
         PointKind::Regular => "regular",

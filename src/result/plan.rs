@@ -20,6 +20,19 @@ pub struct Plan {
     pub load_scales: Vec<f64>,
     /// What this scene does not need, and why.
     pub left_out: Vec<LeftOut>,
+    /// What is valid and may be a mistake.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<Warning>,
+}
+
+/// Something in a request that is valid and may be a mistake.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Warning {
+    /// JSON pointer (RFC 6901) to the value.
+    pub pointer: String,
+    /// What may be wrong.
+    pub detail: String,
 }
 
 /// Something that is not done, and the reason.

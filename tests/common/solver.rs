@@ -67,6 +67,7 @@ impl Solver for MadeUp {
             force_scale: 1.0,
             load_scales: vec![1.0],
             left_out: vec![],
+            warnings: vec![],
         })
     }
 

@@ -70,6 +70,7 @@ async fn parameters_that_a_call_does_not_have_are_refused() {
         (Method::POST, format!("{place}/follow?validate=true"), "there is no parameter `validate`"),
         (Method::POST, format!("{place}/cancel?x"), "there is no parameter `x`"),
         (Method::GET, format!("{place}/path.csv?limit=2"), "there is no parameter `limit`"),
+        (Method::GET, format!("{place}/results.pvd?limit=2"), "there is no parameter `limit`"),
         (Method::GET, format!("{place}/increments?afer=2"), "did you mean `after`?"),
         (Method::GET, "/v1/scenes?foo=1".to_owned(), "there is no parameter `foo`"),
         (Method::GET, "/healthz?foo=1".to_owned(), "there is no parameter `foo`"),
@@ -93,7 +94,7 @@ async fn addresses_and_methods() {
     for path in ["/nothing", "/v1", "/v1/jobs/", "/docs/nothing", "/v1/scenes/nothing"] {
         problem(server.ask(Method::GET, path), 404, "not-found").await;
     }
-    for path in ["", "/increments", "/stream", "/path.csv"] {
+    for path in ["", "/increments", "/stream", "/path.csv", "/results.pvd", "/results.parquet"] {
         problem(server.ask(Method::GET, &format!("/v1/jobs/{unknown}{path}")), 404, "not-found").await;
     }
     problem(server.ask(Method::POST, &format!("/v1/jobs/{unknown}/cancel")), 404, "not-found").await;

@@ -216,6 +216,58 @@ async fn the_path_is_a_table_with_named_columns() {
     assert!(rows[3].contains(",-1e-300,"), "{}", rows[3]);
 }
 
+/// The files of an archive with their texts or bytes.
+async fn unpacked(server: &TestServer, place: &str) -> Vec<(String, Vec<u8>)> {
+    let answer = server.get(place).await;
+    assert_eq!(answer.headers()["content-type"], "application/zip");
+    let bytes = std::io::Cursor::new(answer.bytes().await.expect("a body"));
+    let mut archive = zip::ZipArchive::new(bytes).expect("an archive");
+    let mut files = Vec::new();
+    for place in 0..archive.len() {
+        let mut file = archive.by_index(place).expect("a file");
+        let mut content = Vec::new();
+        std::io::Read::read_to_end(&mut file, &mut content).expect("its content");
+        let name = file.name().expect("a name").into_owned();
+        files.push((name, content));
+    }
+    files
+}
+
+/// That the values are those of the increments is seen by `tests/result_files.sh`, with the programs the files are for.
+#[tokio::test]
+async fn the_path_is_there_for_other_programs_while_it_grows_and_after() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let solver = MadeUp::holding_at(600);
+    let server = TestServer::start(&folder.path().join("jobs.db"), solver.clone()).await;
+    let id = server.submit(&request("files", 700)).await;
+    let job = server.until(&id, |job| job["progress"]["increments"] == 600).await;
+    let (pvd, parquet) = (&job["links"]["results_pvd"], &job["links"]["results_parquet"]);
+    let (pvd, parquet) = (pvd.as_str().expect("a place"), parquet.as_str().expect("a place"));
+    assert_eq!(unpacked(&server, pvd).await.len(), 601);
+    solver.let_go();
+    server.ended(&id).await;
+    let files = unpacked(&server, pvd).await;
+    assert_eq!(files.len(), 701);
+    let (name, list) = files.last().expect("a list");
+    let list = String::from_utf8(list.clone()).expect("text");
+    assert_eq!((name.as_str(), list.matches("<DataSet ").count()), ("path.pvd", 700));
+    let times: Vec<f64> =
+        list.split("timestep=\"").skip(1).map(|rest| rest.split('"').next().unwrap().parse().unwrap()).collect();
+    assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "times rise");
+    for (name, piece) in &files[..700] {
+        assert!(list.contains(name.as_str()));
+        let piece = String::from_utf8(piece.clone()).expect("text");
+        let document = roxmltree::Document::parse(&piece).expect("XML");
+        let array = |name: &str| document.descendants().any(|node| node.attribute("Name") == Some(name));
+        assert!(array("displacement") && array("contact_status") && array("load_factor") && array("event"));
+    }
+    let files = unpacked(&server, parquet).await;
+    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["increments.parquet", "nodes.parquet", "elements.parquet", "contacts.parquet"]);
+    assert!(files.iter().all(|(_, bytes)| bytes.starts_with(b"PAR1") && bytes.ends_with(b"PAR1")));
+    assert_eq!(unpacked(&server, parquet).await, files);
+}
+
 #[tokio::test]
 async fn a_failed_job_can_be_queued_again_and_another_cannot() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -157,14 +157,22 @@ fn extensions_say_the_format_and_unknown_ones_are_refused_before_anything_is_tra
             std::fs::read_to_string(place).ok(),
         )
     };
+    let pieces = || std::fs::read_dir(folder.path().join("path")).map(Iterator::count).ok();
     for (name, more, begins) in [
         ("path.csv", &[][..], "index,stage,"),
         ("path.NDJSON", &[], "{\"index\":0,"),
-        ("path", &[], "{\"index\":0,"),
+        ("plain", &[], "{\"index\":0,"),
         ("path.table", &["--format", "csv"], "index,stage,"),
+        ("path.pvd", &[], "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\""),
     ] {
         let (status, told, written) = run(name, more);
         assert!(status == Some(0) && written.expect("a file").starts_with(begins), "{name}: {told}");
+    }
+    assert_eq!(run("rows.ndjson", &[]).2.map(|lines| lines.lines().count()), pieces());
+    assert_eq!(run("path.parquet", &[]).0, Some(0));
+    for name in ["path.parquet", "path.nodes.parquet", "path.elements.parquet", "path.contacts.parquet"] {
+        let bytes = std::fs::read(folder.path().join(name)).expect("a table");
+        assert!(bytes.starts_with(b"PAR1") && bytes.ends_with(b"PAR1"), "{name}");
     }
     for (name, more, told_of) in [
         ("path.xlsx", &[][..], "the extension `xlsx` names no format"),

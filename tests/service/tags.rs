@@ -35,8 +35,8 @@ async fn a_finished_job_is_sent_once() {
     let server = TestServer::start(&folder.path().join("jobs.db"), solver.clone()).await;
     let id = server.submit(&request("held", 6)).await;
     server.until(&id, |job| job["progress"]["increments"] == 3).await;
-    let places =
-        ["", "/increments", "/increments?after=2&limit=2", "/path.csv"].map(|part| format!("/v1/jobs/{id}{part}"));
+    let parts = ["", "/increments", "/increments?after=2&limit=2", "/path.csv", "/results.pvd", "/results.parquet"];
+    let places = parts.map(|part| format!("/v1/jobs/{id}{part}"));
     for place in &places[..3] {
         let answer = server.get(place).await;
         assert!(!answer.headers().contains_key("etag"), "{place}: what still grows has no tag");

@@ -2,4 +2,5 @@
 
 pub(crate) mod findings;
 pub(crate) mod outcome;
+pub(crate) mod path_file;
 pub(crate) mod written;

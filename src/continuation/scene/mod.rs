@@ -20,6 +20,7 @@ pub(crate) mod requested_contacts;
 pub(crate) mod scales;
 pub(crate) mod stage_load;
 pub(crate) mod tolerances;
+mod warnings;
 
 use crate::mechanics::contact::ContactPair;
 use crate::mechanics::problem::node_contact_forces::Corner;
@@ -167,6 +168,7 @@ impl Scene {
             force_scale: force,
             load_scales: stages.iter().map(|stage| stage.load_scale).collect(),
             left_out,
+            warnings: warnings::warnings(model),
         };
         let no_displacements = NodalValues::zero(model.nodes.keys().map(String::as_str), model.dimension);
         let analysis = request.analysis.clone();

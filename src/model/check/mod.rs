@@ -75,6 +75,14 @@ fn model(model: &Model, at: &DocumentPlace, mistakes: &mut Mistakes) -> usize {
     if let Some(name) = &model.name {
         printable(name, &at.member("name"), mistakes);
     }
+    if let Some(units) = &model.units {
+        let at = at.member("units");
+        for (member, label) in [("length", &units.length), ("force", &units.force)] {
+            if let Some(label) = label {
+                printable(label, &at.member(member), mistakes);
+            }
+        }
+    }
     let scope = Scope::new(model, *at);
     structure::nodes(&scope, mistakes);
     structure::supports(&scope, mistakes);

@@ -5,14 +5,16 @@ use indexmap::IndexMap;
 use crate::model::decode::reader::{Choices, Fields, Input, count, number, numbers, text};
 use crate::model::input::mistakes::Mistakes;
 use crate::model::request::{
-    Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Strain, Until,
+    Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Strain, Units, Until,
 };
 
 const MODEL: Fields = Fields {
     what: "a model",
-    known: &["name", "dimension", "nodes", "supports", "elements", "obstacles", "contacts", "stages"],
+    known: &["name", "units", "dimension", "nodes", "supports", "elements", "obstacles", "contacts", "stages"],
     later: &[],
 };
+
+const UNITS: Fields = Fields { what: "labels of units", known: &["length", "force"], later: &[] };
 
 const BAR: Fields = Fields {
     what: "a bar",
@@ -82,6 +84,7 @@ const COMPONENT: Choices<Component> = Choices {
 pub(super) fn model(input: &Input, mistakes: &mut Mistakes) -> Option<Model> {
     let object = input.object(&MODEL, mistakes)?;
     let name = object.optional("name", mistakes, text);
+    let units = object.optional("units", mistakes, units);
     let dimension = object.required("dimension", mistakes, count);
     let nodes = object.required("nodes", mistakes, vectors);
     let supports = object
@@ -94,6 +97,7 @@ pub(super) fn model(input: &Input, mistakes: &mut Mistakes) -> Option<Model> {
     let stages = object.required("stages", mistakes, |input, mistakes| input.list(mistakes, stage));
     Some(Model {
         name: name?,
+        units: units?,
         // A dimension too large for the machine's words is refused with all others that are not 2 or 3.
         dimension: usize::try_from(dimension?).unwrap_or(usize::MAX),
         nodes: nodes?,
@@ -103,6 +107,13 @@ pub(super) fn model(input: &Input, mistakes: &mut Mistakes) -> Option<Model> {
         contacts: contacts?,
         stages: stages?,
     })
+}
+
+fn units(input: &Input, mistakes: &mut Mistakes) -> Option<Units> {
+    let object = input.object(&UNITS, mistakes)?;
+    let length = object.optional("length", mistakes, text);
+    let force = object.optional("force", mistakes, text);
+    Some(Units { length: length?, force: force? })
 }
 
 fn component(input: &Input, mistakes: &mut Mistakes) -> Option<Component> {

@@ -94,17 +94,12 @@ fn stage() -> impl Strategy<Value = Stage> {
 }
 
 fn model() -> impl Strategy<Value = Model> {
-    let geometry = (of(name()), 0usize..5, map(numbers()), map(vec(component(), 0..4)), vec(element(), 0..4));
+    let units = (of(name()), of(name())).prop_map(|(length, force)| Units { length, force });
+    let geometry =
+        (of(name()), of(units), 0usize..5, map(numbers()), map(vec(component(), 0..4)), vec(element(), 0..4));
     let rest = (map(obstacle()), vec(contact(), 0..4), vec(stage(), 0..3));
-    (geometry, rest).prop_map(|((name, dimension, nodes, supports, elements), (obstacles, contacts, stages))| Model {
-        name,
-        dimension,
-        nodes,
-        supports,
-        elements,
-        obstacles,
-        contacts,
-        stages,
+    (geometry, rest).prop_map(|((name, units, dimension, nodes, supports, elements), (obstacles, contacts, stages))| {
+        Model { name, units, dimension, nodes, supports, elements, obstacles, contacts, stages }
     })
 }
 
@@ -253,7 +248,12 @@ fn every_mistake_is_listed_with_its_place() {
 
 #[test]
 fn a_flood_of_mistakes_is_bounded() {
-    let errors = errors(&format!("{{\"model\": {{\"elements\": [{}0]}}}}", "0,".repeat(100_000))).0;
-    assert_eq!(errors.len(), crate::model::input::limits::MAX_LISTED_MISTAKES + 1);
-    assert!(errors.last().unwrap().detail.contains("more mistakes are not listed"));
+    let flood = |elements: String| errors(&format!("{{\"model\": {{\"elements\": [{elements}0]}}}}")).0;
+    let same = flood("0,".repeat(100_000));
+    assert!(same.len() < 10, "repeats are counted: {}", same.len());
+    let different = flood((0..100_000).map(|kind| format!("{{\"kind\": \"k{kind}\"}},")).collect());
+    assert_eq!(different.len(), crate::model::input::limits::MAX_LISTED_MISTAKES + 1);
+    for errors in [same, different] {
+        assert!(errors.last().unwrap().detail.contains("more mistakes are not listed"));
+    }
 }

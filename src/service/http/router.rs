@@ -6,7 +6,7 @@ use crate::service::http::calls::{
 };
 use crate::service::http::input::parameters::{self, CallsWithoutParameters};
 use crate::service::http::state::service::Service;
-use crate::service::http::{answer, dashboard, document, manual, request_id};
+use crate::service::http::{answer, dashboard, docs, document, manual, request_id};
 use crate::service::jobs::Limits;
 use axum::middleware::{from_fn, from_fn_with_state};
 use axum::{Router, routing};
@@ -14,7 +14,6 @@ use std::sync::Arc;
 use tower_http::catch_panic::CatchPanicLayer;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
-use utoipa_swagger_ui::{Config, SwaggerUi};
 
 fn api() -> OpenApiRouter<Service> {
     OpenApiRouter::with_openapi(document::base())
@@ -29,6 +28,8 @@ fn api() -> OpenApiRouter<Service> {
         .routes(routes!(increments::exact::exact))
         .routes(routes!(increments::stream::stream))
         .routes(routes!(increments::csv::path_csv))
+        .routes(routes!(increments::results::pvd))
+        .routes(routes!(increments::results::parquet))
         .routes(routes!(studies::submit, studies::list))
         .routes(routes!(studies::get, studies::delete))
         .routes(routes!(studies::cancel))
@@ -63,11 +64,13 @@ pub fn router(service: Service) -> serde_json::Result<Router> {
     let (access, jobs) = (service.access.clone(), service.jobs.clone());
     let without = CallsWithoutParameters::of(&description);
     let description: Arc<str> = document::finish(description, &limits, access.asks_tokens())?.into();
-    let docs = Router::from(SwaggerUi::new("/docs").config(Config::from("/openapi.json")));
     let routes = routes
         .route_layer(from_fn_with_state(without, parameters::refuse_unknown))
         .route("/", routing::get(dashboard::index))
         .route("/assets/{*name}", routing::get(dashboard::asset))
+        .route("/docs", routing::get(docs::folder))
+        .route("/docs/", routing::get(docs::index))
+        .route("/docs/{name}", routing::get(docs::asset))
         .route("/manual", routing::get(manual::contents))
         .route("/manual/", routing::get(manual::contents))
         .route("/manual/{chapter}", routing::get(manual::chapter))
@@ -75,7 +78,6 @@ pub fn router(service: Service) -> serde_json::Result<Router> {
         .route("/manual/pictures/{name}", routing::get(manual::picture))
         .route("/openapi.json", routing::get(move || openapi::openapi(description.clone())))
         .with_state(service)
-        .merge(docs.layer(from_fn(answer::gzip::unpack_where_not_accepted)))
         .layer(from_fn_with_state(access.clone(), admission::admit))
         .layer(CatchPanicLayer::custom(answer::problem::from_panic))
         .layer(from_fn(answer::problem::every_error));

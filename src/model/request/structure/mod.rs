@@ -13,6 +13,6 @@ mod stage;
 
 pub use component::Component;
 pub use element::Element;
-pub use model::Model;
+pub use model::{Model, Units};
 pub use obstacle::{Contact, Obstacle, Side};
 pub use stage::{DisplacementBound, Stage, Until};

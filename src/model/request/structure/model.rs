@@ -15,6 +15,9 @@ pub struct Model {
     /// A title.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
+    /// Labels of its units, shown with results and never computed with.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub units: Option<Units>,
     /// 2 or 3.
     #[cfg_attr(feature = "server", schema(minimum = 2, maximum = 3))]
     pub dimension: usize,
@@ -34,6 +37,19 @@ pub struct Model {
     /// Run in order; each starts at load factor 0 and holds what earlier ones reached.
     #[cfg_attr(feature = "server", schema(min_items = 1))]
     pub stages: Vec<Stage>,
+}
+
+/// Labels of units, such as `m` and `kN`.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Units {
+    /// Of coordinates, displacements, gaps and slips.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub length: Option<String>,
+    /// Of forces and reactions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force: Option<String>,
 }
 
 impl Model {
@@ -57,6 +73,7 @@ impl Model {
     pub fn new(dimension: usize) -> Self {
         Self {
             name: None,
+            units: None,
             dimension,
             nodes: IndexMap::new(),
             supports: IndexMap::new(),

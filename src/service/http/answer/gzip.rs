@@ -1,16 +1,8 @@
 //! Compressed answers, and the same for clients that do not read them.
 
-use axum::body::{Body, to_bytes};
-use axum::extract::Request;
-use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
-use axum::middleware::Next;
-use axum::response::{IntoResponse, Response};
+use axum::http::{HeaderMap, header};
 use flate2::read::GzDecoder;
 use std::io::Read;
-use tokio::task::spawn_blocking;
-
-/// Bytes of a compressed answer that is unpacked; the scripts of `/docs` are far below.
-const MOST: usize = 16 * 1024 * 1024;
 
 /// Whether the client accepts gzip (`Accept-Encoding`, RFC 9110, section 12.5.3).
 pub fn takes_gzip(headers: &HeaderMap) -> bool {
@@ -29,27 +21,6 @@ pub fn unpacked(compressed: &[u8]) -> std::io::Result<Vec<u8>> {
     let mut plain = Vec::new();
     GzDecoder::new(compressed).read_to_end(&mut plain)?;
     Ok(plain)
-}
-
-/// Answers that are compressed in any case, as the files of `/docs` are, are unpacked for clients that do not accept gzip.
-pub async fn unpack_where_not_accepted(request: Request, next: Next) -> Response {
-    let is_accepted = takes_gzip(request.headers());
-    let mut answer = next.run(request).await;
-    if answer.headers().get(header::CONTENT_ENCODING).is_none_or(|coding| coding != "gzip") {
-        return answer;
-    }
-    answer.headers_mut().insert(header::VARY, HeaderValue::from_static("accept-encoding"));
-    if is_accepted {
-        return answer;
-    }
-    let (mut parts, body) = answer.into_parts();
-    let Ok(compressed) = to_bytes(body, MOST).await else { return StatusCode::INTERNAL_SERVER_ERROR.into_response() };
-    let Ok(Ok(plain)) = spawn_blocking(move || unpacked(&compressed)).await else {
-        return StatusCode::INTERNAL_SERVER_ERROR.into_response();
-    };
-    parts.headers.remove(header::CONTENT_ENCODING);
-    parts.headers.remove(header::CONTENT_LENGTH);
-    Response::from_parts(parts, Body::from(plain))
 }
 
 #[cfg(test)]

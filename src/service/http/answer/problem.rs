@@ -315,7 +315,7 @@ pub async fn every_error(request: Request, next: Next) -> Response {
     }
     let kind = Kind::of_status(status);
     let detail = match kind {
-        Kind::NotFound => format!("nothing is served at {asked}; / lists what is"),
+        Kind::NotFound => format!("nothing is served at {asked}; /docs lists what is, with examples"),
         Kind::MethodNotAllowed => format!("{asked} is not offered; the Allow header lists what is"),
         _ => format!("{asked}: {status}"),
     };

@@ -5,19 +5,17 @@
 
 mod plotly;
 
+use crate::service::http::answer::embedded::{answer, media_type};
 use crate::service::http::answer::problem::Problem;
-use crate::service::http::answer::tag::Tag;
 use axum::extract::Path;
-use axum::http::{HeaderMap, header};
-use axum::response::{IntoResponse, Response};
+use axum::http::HeaderMap;
+use axum::response::Response;
 use rust_embed::RustEmbed;
 
 /// Read from the folder in a debug build, part of the program in a release build.
 #[derive(RustEmbed)]
 #[folder = "src/service/http/dashboard/page/"]
 struct Page;
-
-const HTML: &str = "text/html; charset=utf-8";
 
 /// The page.
 pub async fn index(headers: HeaderMap) -> Result<Response, Problem> {
@@ -26,18 +24,10 @@ pub async fn index(headers: HeaderMap) -> Result<Response, Problem> {
 
 /// Scripts, styles and pictures of the page.
 pub async fn asset(Path(name): Path<String>, headers: HeaderMap) -> Result<Response, Problem> {
-    if name == plotly::NAME { plotly::script(&headers).await } else { embedded(&name, &headers) }
+    if name == plotly::NAME { plotly::PLOTLY.answer(&headers).await } else { embedded(&name, &headers) }
 }
 
 fn embedded(name: &str, headers: &HeaderMap) -> Result<Response, Problem> {
     let file = Page::get(name).ok_or_else(|| Problem::not_found(format_args!("part of the page of that name")))?;
-    let media_type = match name.rsplit_once('.').map(|(_, ending)| ending) {
-        Some("html") => HTML,
-        Some("js") => plotly::SCRIPT,
-        Some("css") => "text/css; charset=utf-8",
-        Some("svg") => "image/svg+xml",
-        _ => "application/octet-stream",
-    };
-    let own = [(header::CONTENT_TYPE, media_type)];
-    Tag::of(&file.data).answer(headers, || Ok((own, file.data.into_owned()).into_response()))
+    answer(media_type(name), file.data.into_owned(), headers)
 }

@@ -20,13 +20,15 @@ const QUEUEING: [&str; 4] = ["submit_job", "submit_study", "submit_sweep", "foll
 const QUEUEING_AGAIN: &str = "retry_job";
 
 /// Calls whose answers carry an entity tag once their resource has ended.
-const TAGGED: [&str; 15] = [
+const TAGGED: [&str; 17] = [
     "get_job",
     "get_request",
     "list_increments",
     "get_columns",
     "get_exact_path",
     "get_path_csv",
+    "get_results_pvd",
+    "get_results_parquet",
     "get_study",
     "get_study_table_csv",
     "get_study_table_txt",
@@ -38,13 +40,15 @@ const TAGGED: [&str; 15] = [
     "get_sweep_picture",
 ];
 /// The calls that take the id of a job that has been queued.
-const OF_A_JOB: [&str; 11] = [
+const OF_A_JOB: [&str; 13] = [
     "get_job",
     "get_request",
     "list_increments",
     "get_columns",
     "get_exact_path",
     "get_path_csv",
+    "get_results_pvd",
+    "get_results_parquet",
     "stream_increments",
     "follow_direction",
     "cancel_job",

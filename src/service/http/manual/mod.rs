@@ -6,11 +6,11 @@
 mod render;
 
 use crate::manual::CHAPTERS;
+use crate::service::http::answer::embedded::{PAGE, STYLE, answer, media_type};
 use crate::service::http::answer::problem::Problem;
-use crate::service::http::answer::tag::Tag;
 use axum::extract::Path;
-use axum::http::{HeaderMap, header};
-use axum::response::{IntoResponse, Response};
+use axum::http::HeaderMap;
+use axum::response::Response;
 use rust_embed::RustEmbed;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -48,26 +48,17 @@ pub async fn chapter(Path(name): Path<String>, headers: HeaderMap) -> Result<Res
 
 /// How the pages look.
 pub async fn style(headers: HeaderMap) -> Result<Response, Problem> {
-    sent("text/css; charset=utf-8", include_str!("style.css"), &headers)
+    answer(STYLE, include_str!("style.css"), &headers)
 }
 
 /// A picture of a chapter.
 pub async fn picture(Path(name): Path<String>, headers: HeaderMap) -> Result<Response, Problem> {
     let found = PathPictures::get(&name).or_else(|| DashboardPictures::get(&name));
     let file = found.ok_or_else(|| Problem::not_found(format_args!("picture of that name")))?;
-    let media_type = if name.ends_with(".svg") { "image/svg+xml" } else { "image/png" };
-    sent(media_type, file.data.into_owned(), &headers)
+    answer(media_type(&name), file.data.into_owned(), &headers)
 }
 
 fn page(name: &str, headers: &HeaderMap) -> Result<Response, Problem> {
     let page = PAGES.get(name).ok_or_else(|| Problem::not_found(format_args!("chapter of that name")))?;
-    sent("text/html; charset=utf-8", page.as_str(), headers)
-}
-
-fn sent(
-    media_type: &'static str,
-    body: impl AsRef<[u8]> + IntoResponse,
-    headers: &HeaderMap,
-) -> Result<Response, Problem> {
-    Tag::of(body.as_ref()).answer(headers, || Ok(([(header::CONTENT_TYPE, media_type)], body).into_response()))
+    answer(PAGE, page.as_str(), headers)
 }

@@ -111,6 +111,8 @@ pub struct Links {
     pub increments: String,
     pub stream: String,
     pub path_csv: String,
+    pub results_pvd: String,
+    pub results_parquet: String,
 }
 
 impl TryFrom<JobRecord> for Job {
@@ -150,6 +152,8 @@ impl TryFrom<JobRecord> for Job {
                 increments: format!("{itself}/increments"),
                 stream: format!("{itself}/stream"),
                 path_csv: format!("{itself}/path.csv"),
+                results_pvd: format!("{itself}/results.pvd"),
+                results_parquet: format!("{itself}/results.parquet"),
                 itself,
             },
         })

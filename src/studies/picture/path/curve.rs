@@ -1,5 +1,6 @@
 //! Extracts the curve and its events from the increments of a path.
 
+use crate::model::Model;
 use crate::result::increment::{Increment, PointKind};
 use crate::studies::picture::path::Against;
 use std::sync::Arc;
@@ -50,10 +51,12 @@ pub enum EventKind {
 }
 
 impl Curve {
-    pub fn new(title: Option<&str>, against: &Against, increments: &[Increment]) -> Self {
+    pub fn new(model: &Model, against: &Against, increments: &[Increment]) -> Self {
+        let length = model.units.as_ref().and_then(|units| units.length.as_deref());
+        let unit = length.map_or_else(String::new, |length| format!(" [{length}]"));
         let mut curve = Self {
-            title: title.map(str::to_owned),
-            against: against.to_string(),
+            title: model.name.clone(),
+            against: format!("{against}{unit}"),
             stages: Vec::new(),
             events: Vec::new(),
         };

@@ -63,7 +63,7 @@ pub fn svg(model: &Model, increments: &[Increment], against: Option<Against>) ->
         Some(against) => against,
         None => farthest(model, increments).ok_or(PlotError::Empty)?,
     };
-    let curve = Curve::new(model.name.as_deref(), &against, increments);
+    let curve = Curve::new(model, &against, increments);
     if curve.is_empty() {
         return Err(PlotError::Empty);
     }

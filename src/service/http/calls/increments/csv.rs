@@ -1,26 +1,21 @@
 //! The path as a table.
 
-use crate::check::measure::Errors;
 use crate::output::Table;
-use crate::result::increment::Increment;
 use crate::service::http::answer::problem::Problem;
 use crate::service::http::answer::tag::Tag;
+use crate::service::http::calls::increments::stored::{Stored, StoredPath};
 use crate::service::http::document;
 use crate::service::http::state::service::Service;
 use crate::service::http::tasks::target::Target;
 use crate::service::http::view::job::Job;
-use crate::service::store::Page;
 use async_stream::try_stream;
 use axum::body::Body;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
-use serde::Deserialize;
 use std::io;
 use std::sync::Arc;
 use tokio_stream::Stream;
 use uuid::Uuid;
-
-const PAGE: Page = Page { rows: 500, bytes: 1 << 20 };
 
 /// The increments stored so far, one row each.
 ///
@@ -48,40 +43,19 @@ pub async fn path_csv(target: Target<Job>) -> Result<Response, Problem> {
     Tag::of(format!("{id} {:?}", job.last_index).as_bytes()).answer(&headers, make)
 }
 
-/// A stored increment.
-#[derive(Deserialize)]
-struct Stored {
-    #[serde(flatten)]
-    increment: Increment,
-    /// Absent from increments that older versions have stored.
-    #[serde(default)]
-    measure: Option<Errors>,
-}
-
-/// The rows of the table. One page of increments is read at a time, so that memory does not grow with the path.
+/// The rows of the table.
 fn rows(service: Service, id: Uuid) -> impl Stream<Item = io::Result<String>> {
     try_stream! {
-        let mut after = None;
-        let request = service.jobs.store().request(id).await.map_err(io::Error::other)?;
-        let request = request.ok_or_else(|| io::Error::other("the job has been deleted"))?;
-        let bytes = request.len();
-        let read = move || serde_json::from_str(&request).map(|request| Table::of(&request));
-        let table = Arc::new(service.offload.run(bytes, read).await?);
-        loop {
-            let page = service.jobs.store().increments(id, after, PAGE).await.map_err(io::Error::other)?;
-            let Some(last) = page.last() else { break };
-            let mut text = if after.is_none() { table.header() } else { String::new() };
-            after = Some(last.index);
-            let bytes = page.iter().map(|line| line.body.len()).sum();
+        let mut path = StoredPath::new(service, id);
+        let table = Arc::new(path.of_request(Table::of).await?);
+        let mut header = table.header();
+        while let Some(page) = path.next_page().await? {
             let table = Arc::clone(&table);
-            let write = move || {
-                for line in &page {
-                    let Stored { increment, measure } = serde_json::from_str(&line.body)?;
-                    text.push_str(&table.row(&increment, measure.as_ref()));
-                }
-                Ok::<_, io::Error>(text)
+            let push = move |text: &mut String, Stored { increment, measure }: Stored| {
+                text.push_str(&table.row(&increment, measure.as_ref()));
+                Ok(())
             };
-            yield service.offload.run(bytes, write).await?;
+            yield path.each(page, std::mem::take(&mut header), push).await?;
         }
     }
 }

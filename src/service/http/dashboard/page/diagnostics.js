@@ -4,7 +4,7 @@ import { isGivenUp } from "./api.js";
 import { element, fill, table } from "./dom.js";
 import { analysisDefaults } from "./schema.js";
 import { axis, colourOf, CONFIGURATION, layout } from "./plot-style.js";
-import { leftOutSentence, settingsSentences, short } from "./words.js";
+import { leftOutSentence, settingsSentences, short, warningSentences } from "./words.js";
 
 const ERRORS = [
   ["residual", "residual"], ["complementarity", "complementarity"], ["energy_error", "energy balance"],
@@ -93,6 +93,7 @@ export class Diagnostics {
     told.length > ROWS ? element("p", { class: "quiet" }, `and ${told.length - ROWS} more`) : null);
     const { left_out: leftOut = [] } = path.job.plan ?? {};
     fill(this.settings, element("h3", {}, "Settings"), element("ul", {},
+      warningSentences(path.job.plan).map((words) => element("li", {}, element("b", {}, "Warning: "), words)),
       settingsSentences(path.request, path.job.plan, defaults).map((words) => element("li", {}, words)),
       leftOut.map((one) => element("li", {}, `Left out: ${leftOutSentence(one)}`))));
   }

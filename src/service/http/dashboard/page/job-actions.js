@@ -18,6 +18,8 @@ export function jobActions(job, done, failed) {
       location.reload();
     })) : null,
     button("Path (csv)", then(() => download(`/v1/jobs/${id}/path.csv`, `path-${id}.csv`))),
+    button("ParaView (zip)", then(() => download(`/v1/jobs/${id}/results.pvd`, `path-${id}-pvd.zip`))),
+    button("Parquet (zip)", then(() => download(`/v1/jobs/${id}/results.parquet`, `path-${id}-parquet.zip`))),
     button("Increments (json)", then(() => downloadIncrements(id))),
     button("Model (json)", then(() => download(`/v1/jobs/${id}/request`, `request-${id}.json`))),
     button("Run again, changed", () => openModelOf(id)),

@@ -38,10 +38,18 @@ export function isAbscissa(name, request) {
   return isRecorded && of.component < model.dimension;
 }
 
-export const ordinateWords = (name) => ORDINATES.find(([known]) => known === name)?.[1] ?? name;
+/** What of the labels of units in the model stands behind a quantity, in brackets. */
+const unitOf = (request, ...powers) => {
+  const labels = powers.map((of) => request?.model?.units?.[of]);
+  return labels.length > 0 && labels.every(Boolean) ? ` [${labels.join(" ")}]` : "";
+};
 
-export function abscissaWords(name) {
+export const ordinateWords = (name, request = null) => (ORDINATES.find(([known]) => known === name)?.[1] ?? name)
+  + (name.startsWith("/energy/") ? unitOf(request, "force", "length") : "");
+
+export function abscissaWords(name, request = null) {
   const of = ofDisplacement(name);
+  if (of && request) return abscissaWords(name) + unitOf(request, "length");
   return of ? `displacement ${LETTERS[of.component]} of ${of.node}` : name === ARC_LENGTH ? "arc length" : name;
 }
 

@@ -67,7 +67,8 @@ export class PathPlot {
     const exact = this.exact();
     if (exact) traces.push(exact);
     await Plotly.react(this.place, traces, layout({
-      xaxis: axis(abscissaWords(axes.abscissa)), yaxis: axis(ordinateWords(axes.ordinate)), uirevision: this.revision,
+      xaxis: axis(abscissaWords(axes.abscissa, paths[0].request)),
+      yaxis: axis(ordinateWords(axes.ordinate, paths[0].request)), uirevision: this.revision,
     }), CONFIGURATION);
     this.listen();
     namedPoints(this.list, paths[0], (index) => this.told.chosen(paths[0].id, index));

@@ -9,7 +9,7 @@ import { SceneChoice } from "./scene-choice.js";
 import { analysisDefaults, description } from "./schema.js";
 import { SettingsFields } from "./settings-fields.js";
 import { change, jobOf, state } from "./state.js";
-import { leftOutSentence, plainWords, settingsSentences } from "./words.js";
+import { leftOutSentence, plainWords, settingsSentences, warningSentences } from "./words.js";
 
 /** Milliseconds without input before the text is checked. */
 const PAUSE = 400;
@@ -197,6 +197,7 @@ export class RunForm {
       const scene = isStudy ? plan.scene : plan;
       const sentences = settingsSentences(JSON.parse(text), scene, defaults);
       fill(this.verdict, element("h3", {}, "Plan"), element("ul", { class: "plan" },
+        warningSentences(scene).map((words) => element("li", {}, element("b", {}, "Warning: "), words)),
         [...(isStudy ? [studySentence(plan)] : []), ...sentences].map((words) => element("li", {}, words)),
         scene.left_out.map((one) => element("li", {}, element("b", {}, "Left out: "), leftOutSentence(one)))));
       this.button.disabled = false;

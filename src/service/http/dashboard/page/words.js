@@ -40,6 +40,9 @@ export function stopSentence(job) {
   return job.stop_reason ? STOPPED[job.stop_reason] ?? plainWords(job.stop_reason) : "";
 }
 
+/** Sentences on what is valid and may be a mistake. */
+export const warningSentences = (plan) => (plan?.warnings ?? []).map(({ pointer, detail }) => `${pointer}: ${detail}.`);
+
 export const leftOutSentence = ({ what, why }) => `${what}, because ${why}.`;
 
 /** The settings, with the defaults marked. */

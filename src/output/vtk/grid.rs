@@ -1,0 +1,70 @@
+//! What the files of all increments of a path share: points, cells, and the arrays that they have.
+
+use crate::model::JobRequest;
+use crate::model::request::recorded_forces::{recorded_elements, recorded_supports};
+use crate::model::request::{Element, Record};
+use crate::output::vtk::arrays::DataArray;
+use std::collections::HashMap;
+
+/// Types of cells: a point, for a spring to the ground, and a line.
+const VERTEX: u8 = 1;
+const LINE: u8 = 3;
+
+/// The nodes and elements of a model as a grid.
+#[derive(Debug, Clone)]
+pub struct Grid {
+    pub(super) points: DataArray,
+    pub(super) cells: [DataArray; 3],
+    /// Place of each element in the model.
+    pub(super) elements: DataArray,
+    pub(super) place_of_node: HashMap<String, usize>,
+    pub(super) number_of_elements: usize,
+    pub(super) has_contacts: bool,
+    pub(super) has_supports: bool,
+    pub(super) has_bar_forces: bool,
+    pub(super) has_spring_forces: bool,
+    /// What the path is called, written to every file.
+    pub(super) branch: String,
+}
+
+impl Grid {
+    /// The grid of a request; `branch` tells this path from those that leave it.
+    pub fn of(request: &JobRequest, branch: impl Into<String>) -> Self {
+        let model = &request.model;
+        let place_of_node: HashMap<String, usize> =
+            model.nodes.keys().enumerate().map(|(place, name)| (name.clone(), place)).collect();
+        let points: Vec<f64> = model
+            .nodes
+            .values()
+            .flat_map(|position| (0..3).map(|axis| position.get(axis).copied().unwrap_or_default()))
+            .collect();
+        let ends = |element: &Element| -> Vec<i64> {
+            element.nodes().iter().filter_map(|node| place_of_node.get(node)).map(|place| *place as i64).collect()
+        };
+        let nodes: Vec<Vec<i64>> = model.elements.iter().map(ends).collect();
+        let offsets = nodes.iter().scan(0, |end, nodes| {
+            *end += nodes.len() as i64;
+            Some(*end)
+        });
+        let types = nodes.iter().map(|nodes| if nodes.len() == 1 { VERTEX } else { LINE });
+        let recorded = recorded_elements(request);
+        let has = |is_bar| recorded.iter().any(|place| matches!(model.elements[*place], Element::Bar { .. }) == is_bar);
+        let named = request.analysis.record.as_ref().and_then(Record::named_contacts);
+        Self {
+            points: DataArray::numbers("points", 3, &points),
+            cells: [
+                DataArray::integers("connectivity", nodes.iter().flatten().copied()),
+                DataArray::integers("offsets", offsets),
+                DataArray::bytes("types", types),
+            ],
+            elements: DataArray::integers("element", (0..).take(nodes.len())),
+            number_of_elements: nodes.len(),
+            has_contacts: named.map_or(!model.contacts.is_empty(), |named| !named.is_empty()),
+            has_supports: !recorded_supports(request).is_empty(),
+            has_bar_forces: has(true),
+            has_spring_forces: has(false),
+            place_of_node,
+            branch: branch.into(),
+        }
+    }
+}

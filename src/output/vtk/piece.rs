@@ -1,0 +1,158 @@
+//! The file of one increment.
+
+use crate::output::table::point_kind;
+use crate::output::vtk::arrays::{DataArray, write_text};
+use crate::output::vtk::grid::Grid;
+use crate::result::increment::{Increment, Status};
+use crate::result::nodal_values::NodalValues;
+use quick_xml::Writer;
+use quick_xml::events::{BytesDecl, Event};
+use std::io::{self, Write};
+
+/// What `contact_status` says of a node: none of its contacts is recorded; the numbers of the others are larger the more
+/// they hold the node's motion back.
+const NO_CONTACT: u8 = 255;
+
+fn number_of(status: Status) -> u8 {
+    match status {
+        Status::Free => 0,
+        Status::Slip => 1,
+        Status::Stick => 2,
+    }
+}
+
+impl Grid {
+    /// Writes the file of an increment (`.vtu`). Values that are not recorded are not-a-number.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(&self, increment: &Increment, to: impl Write) -> io::Result<()> {
+        let mut to = Writer::new(to);
+        to.write_event(Event::Decl(BytesDecl::new("1.0", None, None)))?;
+        to.create_element("VTKFile")
+            .with_attribute(("type", "UnstructuredGrid"))
+            .with_attribute(("version", "1.0"))
+            .with_attribute(("byte_order", "LittleEndian"))
+            .with_attribute(("header_type", "UInt64"))
+            .write_inner_content(|to| {
+                to.create_element("UnstructuredGrid").write_inner_content(|to| {
+                    to.create_element("FieldData").write_inner_content(|to| self.write_fields(increment, to))?;
+                    to.create_element("Piece")
+                        .with_attribute(("NumberOfPoints", self.place_of_node.len().to_string().as_str()))
+                        .with_attribute(("NumberOfCells", self.number_of_elements.to_string().as_str()))
+                        .write_inner_content(|to| self.write_piece(increment, to))
+                        .map(drop)
+                })?;
+                Ok(())
+            })?;
+        Ok(())
+    }
+
+    fn write_fields<To: Write>(&self, increment: &Increment, to: &mut Writer<To>) -> io::Result<()> {
+        let energy = &increment.energy;
+        for (name, value) in [
+            ("TimeValue", increment.arc_length),
+            ("arc_length", increment.arc_length),
+            ("load_factor", increment.load_factor),
+            ("external_work", energy.external_work),
+            ("strain_energy", energy.strain),
+            ("dissipated", energy.dissipated),
+        ] {
+            DataArray::numbers(name, 1, &[value]).write(to, Some(1))?;
+        }
+        DataArray::numbers("applied_force", 3, &in_space(&increment.applied_forces)).write(to, Some(1))?;
+        let flags = [i64::try_from(increment.index).unwrap_or(i64::MAX), i64::from(increment.point.bifurcation)];
+        for (name, value) in ["index", "bifurcation"].into_iter().zip(flags) {
+            DataArray::integers(name, std::iter::once(value)).write(to, Some(1))?;
+        }
+        for (name, text) in [
+            ("stage", &*increment.stage),
+            ("point", point_kind(increment.point.kind)),
+            ("event", increment.point.event.as_deref().unwrap_or_default()),
+            ("branch", &self.branch),
+        ] {
+            write_text(to, name, text)?;
+        }
+        Ok(())
+    }
+
+    fn write_piece<To: Write>(&self, increment: &Increment, to: &mut Writer<To>) -> io::Result<()> {
+        to.create_element("Points").write_inner_content(|to| self.points.write(to, None))?;
+        to.create_element("Cells")
+            .write_inner_content(|to| self.cells.iter().try_for_each(|array| array.write(to, None)))?;
+        to.create_element("PointData").with_attribute(("Vectors", "displacement")).write_inner_content(|to| {
+            self.at_nodes("displacement", &increment.displacements).write(to, None)?;
+            if self.has_supports {
+                self.at_nodes("support_reaction", &increment.supports).write(to, None)?;
+            }
+            if self.has_contacts {
+                self.contact_arrays(increment).iter().try_for_each(|array| array.write(to, None))?;
+            }
+            Ok(())
+        })?;
+        to.create_element("CellData").write_inner_content(|to| {
+            self.elements.write(to, None)?;
+            self.force_arrays(increment).iter().try_for_each(|array| array.write(to, None))
+        })?;
+        Ok(())
+    }
+
+    fn at_nodes(&self, name: &'static str, values: &NodalValues) -> DataArray {
+        let mut all = vec![f64::NAN; 3 * self.place_of_node.len()];
+        for (node, components) in values.iter() {
+            if let Some(place) = self.place_of_node.get(&**node) {
+                all[3 * place..3 * place + 3].copy_from_slice(&in_space(components));
+            }
+        }
+        DataArray::numbers(name, 3, &all)
+    }
+
+    /// Of a node with several contacts: the status that holds it most, the smallest gap, the sum of the reactions.
+    fn contact_arrays(&self, increment: &Increment) -> [DataArray; 3] {
+        let nodes = self.place_of_node.len();
+        let mut statuses = vec![NO_CONTACT; nodes];
+        let (mut gaps, mut reactions) = (vec![f64::NAN; nodes], vec![0.0; 3 * nodes]);
+        for contact in &increment.contacts {
+            let Some(place) = self.place_of_node.get(&*contact.node) else { continue };
+            let status = number_of(contact.status);
+            statuses[*place] = if statuses[*place] == NO_CONTACT { status } else { statuses[*place].max(status) };
+            gaps[*place] = gaps[*place].min(contact.gap);
+            let own = &mut reactions[3 * place..3 * place + 3];
+            own.iter_mut().zip(in_space(&contact.reaction)).for_each(|(sum, value)| *sum += value);
+        }
+        [
+            DataArray::bytes("contact_status", statuses.into_iter()),
+            DataArray::numbers("gap", 1, &gaps),
+            DataArray::numbers("contact_reaction", 3, &reactions),
+        ]
+    }
+
+    fn force_arrays(&self, increment: &Increment) -> Vec<DataArray> {
+        let cells = self.number_of_elements;
+        let (mut axial, mut forces) = (vec![f64::NAN; cells], vec![f64::NAN; 3 * cells]);
+        for state in &increment.elements {
+            let Ok(place) = usize::try_from(state.element) else { continue };
+            if let (Some(value), Some(cell)) = (state.axial_force, axial.get_mut(place)) {
+                *cell = value;
+            }
+            if let (Some(force), Some(cell)) = (&state.force, forces.get_mut(3 * place..3 * place + 3)) {
+                cell.copy_from_slice(&in_space(force));
+            }
+        }
+        let mut arrays = Vec::new();
+        if self.has_bar_forces {
+            arrays.push(DataArray::numbers("axial_force", 1, &axial));
+        }
+        if self.has_spring_forces {
+            arrays.push(DataArray::numbers("spring_force", 3, &forces));
+        }
+        arrays
+    }
+}
+
+/// Three components; the third is 0 in the plane.
+fn in_space(components: &[f64]) -> [f64; 3] {
+    let mut all = [0.0; 3];
+    all.iter_mut().zip(components).for_each(|(own, value)| *own = *value);
+    all
+}
