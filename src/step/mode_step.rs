@@ -153,7 +153,7 @@ impl StepStart<'_> {
 
     pub(crate) fn settle_by(
         &self,
-        system: ModeSystem<'_>,
+        mut system: ModeSystem<'_>,
         guess: State,
         closing: &dyn ClosingEquation,
         serving: &mut Option<SystemFactorisation>,
@@ -166,6 +166,7 @@ impl StepStart<'_> {
             return Ok(reached);
         }
         let guess = singular_step::guess_beside(self, closing).unwrap_or(guess);
+        slip_turn_update::mark_loose(&mut system, self.rate);
         let corrected = newton::correct_from(&system, system.iterate(guess), closing, self.force_scale, serving, work)
             .map_err(Refused::Newton)?;
         self.directed(system, corrected, closing, serving, work)
@@ -397,6 +398,7 @@ impl StepStart<'_> {
             let factorisations = &mut work.factorisations;
             let tangent =
                 tangent::tangent_and_error(&system, &reached.corrected, self.rate, &mut None, factorisations)?;
+            slip_turn_update::mark_loose(&mut system, self.rate);
             slip_turn_update::set_turns(&mut system, self.rate, &reached.corrected, &tangent);
             let middle = self.reach(0.5 * reached.step, work).ok()?;
             slip_error::drift(

@@ -288,3 +288,46 @@ fn a_foot_on_a_stiff_tie_slips_in_space_as_in_the_plane() {
         assert!((pressed - also).abs() <= 1e-6 * pressed, "{stiffness:e}: {pressed:e} and {also:e}");
     }
 }
+
+/// A node on springs (k = 1) slips along `x` and is lifted off, while the load along `x` falls more slowly than the
+/// friction. The direction of slip moves away from `x` as a power of the normal reaction: by how much it has turned at
+/// lift-off hangs on angles of any size, and the turn there has no bound. The node is at `f/k` in any case.
+#[test]
+fn a_slip_that_lifts_off_while_its_direction_moves_away() {
+    for aside in [0.0, 1e-12, 1e-9, 1e-6, 1e-4, 1e-3, 1e-2, 0.1, 0.5, 2.0] {
+        let request = typed(json!({
+            "model": {
+                "dimension": 3, "nodes": {"node": [0, 0, 0]},
+                "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}],
+                "obstacles": {"floor": {"kind": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}},
+                "contacts": [{"node": "node", "obstacle": "floor", "friction": 0.4}],
+                "stages": [
+                    {"name": "press", "forces": {"node": [0, 0, -1]}, "until": {"load_above": 1}},
+                    {"name": "push", "forces": {"node": [1, 0, 0]}, "until": {"load_above": 1}},
+                    {"name": "lift", "forces": {"node": [-0.1, 0.1 * aside, 1]}, "until": {"load_above": 2}}
+                ]
+            },
+            "analysis": {"max_increments": 200}
+        }));
+        let traced = judged(&request);
+        let stop = traced.report.stop_reason;
+        let what = format!("aside {aside:e}, {stop:?} after {} increments", traced.increments.len());
+        println!("{what}");
+        assert!(matches!(stop, StopReason::StagesCompleted | StopReason::MaxIncrements), "{what}");
+        assert_states(&traced, &what);
+        for increment in traced.increments.iter().filter(|increment| &*increment.stage == "lift") {
+            close(increment.contacts[0].normal_reaction, (1.0 - increment.load_factor).max(0.0), 1e-10, &what);
+        }
+        // Where it lifts off the path may also go back, with the node held: the rule decides.
+        let lifted = traced.increments.iter().find(|increment| {
+            &*increment.stage == "lift" && increment.point.event.is_some() && increment.load_factor > 0.5
+        });
+        let lifted = lifted.expect("a lift-off");
+        close(lifted.load_factor, 1.0, 1e-9, &what);
+        for (found, exact) in lifted.displacements["node"].iter().zip([0.9, 0.1 * aside, 0.0]) {
+            close(*found, exact, 1e-9, &what);
+        }
+        let found = lifted.directions.as_ref().expect("directions");
+        assert!(found.iter().any(|direction| *direction.contacts == [Status::Free]), "{what}");
+    }
+}

@@ -27,6 +27,11 @@
 //! (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, Springer 1996, chapter IV.3); with `κ₁` linear
 //! in `θ₁` as above, the increment is solved repeatedly until the rule holds at its end. The second rule takes over as
 //! `z` grows.
+//!
+//! Where `K ḣ + μ ṙ_n` is negative, as where friction falls faster than the load, the direction moves away from `θ*` as a
+//! power of `1/r_n`, and `κ` grows without bound towards lift-off. The correction then takes no `κ₁` from a point where
+//! the normal reaction is negligible against that at the start; and once the way to lift-off is shorter than the error
+//! that an increment may have, the direction is that of the chord.
 
 use crate::mechanics::contact::Frame;
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
@@ -48,6 +53,8 @@ pub(crate) struct Turn {
     pub at_end: Option<f64>,
     /// The dependence of the turn at the end on the direction there, where the normal reaction is small.
     pub settling: Option<Settling>,
+    /// Whether the normal reaction vanishes so close to the start that the direction follows the motion at once.
+    pub is_loose: bool,
 }
 
 /// The settling of a direction: `κ = -λ (θ - θ*)` near the direction of the last solve.
@@ -113,6 +120,9 @@ impl Rule {
     /// The rule of an increment; `frame` and `direction` are those at its end, `chord` the motion relative to the
     /// obstacle.
     pub fn new(frame: &Frame, start: &Start, turn: &Turn, direction: &Vector, chord: &Vector) -> Self {
+        if turn.is_loose {
+            return Self::loose(frame, direction, chord);
+        }
         let carried = start.carried_to(&frame.normal);
         if let Some(settling) = turn.settling.filter(|settling| settling.share() > 0.0) {
             return Self::settling(frame, &carried, turn, &settling, direction, chord);
@@ -131,6 +141,13 @@ impl Rule {
         let across = cross(&frame.normal, &along);
         let half = 0.5 * dot(&along, chord);
         Self { left_over: dot(&across, chord), across, by_turn: -half, by_first_turn: -half, factor: 1.0 }
+    }
+
+    /// The rule of a direction that is that of the motion, whatever it was at the start: the backward Euler method.
+    fn loose(frame: &Frame, direction: &Vector, chord: &Vector) -> Self {
+        let across = cross(&frame.normal, direction);
+        let by_turn = -dot(direction, chord);
+        Self { left_over: dot(&across, chord), across, by_turn, by_first_turn: 0.0, factor: 1.0 }
     }
 
     /// The rule of a direction that settles. With angles measured from the direction at the start, `φ` the angle of the

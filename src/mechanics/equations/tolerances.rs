@@ -43,3 +43,13 @@ pub(crate) const LARGEST_SETTLING: f64 = 1e8;
 /// smaller divisor may have no correct digit; a direction without a known turn is integrated by the rule of lower
 /// order.
 pub(crate) const SMALLEST_TURN_DIVISOR: f64 = 1e-9;
+
+/// Normal reaction at the end of an increment, relative to that at its start, up to which the turn at the end says
+/// nothing of the turn on the way. Where a slip lifts off, its direction may move away as a power of the reaction, and
+/// its turn per length grows without bound; the correction assumes a turn that is smooth over the increment.
+pub(crate) const LIFTING_OFF: f64 = 1e-4;
+
+/// Arc length to the loss of the normal reaction, at its rate at the start of the increment, up to which a slip may turn
+/// by any angle: ten times the error 1e-9 that an increment may have. A direction that moves away as a slip lifts off
+/// turns again and again at smaller and smaller reactions, and the motion on the way is no longer than this.
+pub(crate) const LOOSE: f64 = 1e-8;

@@ -84,8 +84,6 @@ fn defect(system: &ModeSystem<'_>, contact: usize, start: &Rate, middle: Pointed
         slip_integration::turn_rate(system.loading, contact, state, rate, direction)
     };
     let (last, half) = (direction_at(end.corrected)?, direction_at(middle.corrected)?);
-    let first_turn = turn(system.anchor, start, &begun.direction);
-    let last_turn = turn(&end.corrected.state, end.rate, &last)?;
     let angle = |corrected: &Corrected, direction: &Vector| {
         let normal = system.loading.frame(contact, &corrected.state).normal;
         slip_integration::angle(&normal, &begun.carried_to(&normal), direction)
@@ -101,7 +99,17 @@ fn defect(system: &ModeSystem<'_>, contact: usize, start: &Rate, middle: Pointed
     }
     let x = first_part / length;
     let y = 1.0 - x;
+    if own.is_loose {
+        // Simpson's rule says how far the mean direction is from that at the end.
+        return Some(length * (4.0 * half_angle - 5.0 * last_angle) / 6.0);
+    }
     let settles = own.settling.is_some_and(|settling| settling.share() > 0.0);
+    if own.at_end.is_none() && !settles {
+        // The trapezoidal rule; the mean of the quadratic through the three directions is more exact.
+        return Some(length * (half_angle - x * last_angle) / (6.0 * x * y));
+    }
+    let first_turn = turn(system.anchor, start, &begun.direction);
+    let last_turn = turn(&end.corrected.state, end.rate, &last)?;
     let Some(first_turn) = first_turn.filter(|_| !settles) else {
         // The defect of the rule is 2/3 of the error of the quadratic with the turn at the end.
         let square = last_turn * length - last_angle;
