@@ -266,6 +266,7 @@ pub mod manual {
         method: "The method",
         library: "The library",
         http: "The HTTP interface",
+        python: "Python",
         studies: "Sweeps, studies, explorations",
         operation: "Operation",
         many_machines: "Many machines",

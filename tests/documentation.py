@@ -248,7 +248,10 @@ def environment(program, folder):
     binaries.mkdir()
     (binaries / "arcslip").symlink_to(program)
     taken = {name: value for name, value in os.environ.items() if not name.startswith(("ARCSLIP_", "PG"))}
-    return {**taken, "PATH": f"{binaries}:{os.environ['PATH']}", "HOME": str(folder), "LC_ALL": "C.UTF-8"}
+    # The Python package as if it were installed.
+    package = str(ROOT / "openapi/python/src")
+    path = f"{binaries}:{os.environ['PATH']}"
+    return {**taken, "PATH": path, "PYTHONPATH": package, "HOME": str(folder), "LC_ALL": "C.UTF-8"}
 
 
 def end_group(process):

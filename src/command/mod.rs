@@ -18,8 +18,9 @@ mod verify;
 pub(crate) mod verify_picture;
 mod work;
 
+use crate::command::options::input::MistakeFormat;
 use crate::command::output::outcome::{BAD_INPUT, FAILED, Failure, Outcome};
-use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::process::ExitCode;
 
 /// The version, and the commit that the program is built from.
@@ -50,14 +51,17 @@ enum Command {
     Openapi(openapi::Arguments),
 }
 
-fn run_command() -> Outcome {
+fn arguments() -> Result<(Arguments, ArgMatches), Failure> {
     let matches = options::settings::parse(Arguments::command)?;
-    let arguments = Arguments::from_arg_matches(&matches).map_err(Failure::other)?;
-    match arguments.command {
+    Ok((Arguments::from_arg_matches(&matches).map_err(Failure::other)?, matches))
+}
+
+fn run_command(command: Command, matches: &ArgMatches) -> Outcome {
+    match command {
         Command::Serve(arguments) => {
-            serve::run(&arguments, &options::settings::in_force(Arguments::command(), &matches))
+            serve::run(&arguments, &options::settings::in_force(Arguments::command(), matches))
         }
-        Command::Work(arguments) => work::run(&arguments, &options::settings::in_force(Arguments::command(), &matches)),
+        Command::Work(arguments) => work::run(&arguments, &options::settings::in_force(Arguments::command(), matches)),
         Command::Solve(arguments) => arguments.bounds.within(|| solve::run(&arguments)),
         Command::Study(arguments) => arguments.bounds.within(|| study::run(&arguments)),
         Command::Sweep(arguments) => arguments.bounds.within(|| sweep::run(&arguments)),
@@ -73,9 +77,17 @@ fn run_command() -> Outcome {
 
 /// Runs the command given on the command line.
 pub fn run() -> ExitCode {
-    let outcome = run_command();
+    let mut mistakes = MistakeFormat::Text;
+    let outcome = arguments().and_then(|(arguments, matches)| {
+        mistakes = MistakeFormat::asked(&matches);
+        run_command(arguments.command, &matches)
+    });
     match outcome {
         Ok(code) => code,
+        Err(Failure::Document(errors)) => {
+            eprintln!("{}", mistakes.write(&errors));
+            ExitCode::from(BAD_INPUT)
+        }
         Err(Failure::Input(lines)) => {
             for line in lines {
                 eprintln!("{line}");

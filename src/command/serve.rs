@@ -81,6 +81,7 @@ fn read_again(arguments: &access::Arguments, access: &Access) {
             tracing::info!("the file of tokens has been read again");
         }
         Err(Failure::Input(lines)) => tracing::error!(?lines, "the tokens stay as they were"),
+        Err(Failure::Document(errors)) => tracing::error!(%errors, "the tokens stay as they were"),
         Err(Failure::Other(error)) => tracing::error!(error, "the tokens stay as they were"),
     }
 }

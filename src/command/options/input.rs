@@ -3,6 +3,8 @@
 use crate::check::scenes;
 use crate::command::output::outcome::Failure;
 use crate::model::{InputErrors, JobRequest, decode};
+use clap::ArgMatches;
+use serde_json::json;
 use std::io::{ErrorKind, Read};
 
 /// The argument that names a model.
@@ -11,6 +13,9 @@ pub struct Model {
     /// A file, `-` for standard input, or the name of a built-in scene.
     #[arg(value_name = "FILE")]
     file: String,
+    /// How mistakes in the model are written to standard error.
+    #[arg(long, value_enum, default_value = "text", value_name = "FORMAT")]
+    mistakes: MistakeFormat,
 }
 
 impl Model {
@@ -39,7 +44,32 @@ impl Model {
     }
 }
 
-/// One line per mistake: `place: detail`.
+/// The failure of a document with mistakes.
 pub fn refused(errors: InputErrors) -> Failure {
-    Failure::Input(errors.0.iter().map(ToString::to_string).collect())
+    Failure::Document(errors)
+}
+
+/// How the mistakes of a document are written to standard error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum MistakeFormat {
+    /// One line for each: its place, and what is wrong there.
+    Text,
+    /// One JSON object, `{"errors": [{"pointer": "/model/nodes", "detail": "..."}]}`, as in the answers of the service.
+    Json,
+}
+
+impl MistakeFormat {
+    /// The format asked for on the command line; text for commands that read no model.
+    pub fn asked(matches: &ArgMatches) -> Self {
+        let command = matches.subcommand().map(|(_, command)| command);
+        let asked = command.and_then(|command| command.try_get_one::<Self>("mistakes").ok().flatten());
+        asked.copied().unwrap_or(Self::Text)
+    }
+
+    pub fn write(self, errors: &InputErrors) -> String {
+        match self {
+            Self::Text => errors.to_string(),
+            Self::Json => json!({ "errors": errors }).to_string(),
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! The outcome of a command: its exit status, or why it failed.
 
+use crate::model::InputErrors;
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -12,6 +13,8 @@ pub(crate) const BAD_INPUT: u8 = 2;
 pub enum Failure {
     /// Mistakes in the input, one line each.
     Input(Vec<String>),
+    /// Mistakes in a document, each with its place.
+    Document(InputErrors),
     /// Any other reason.
     Other(String),
 }

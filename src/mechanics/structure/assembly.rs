@@ -160,6 +160,7 @@ impl<'a> ElementBlock<'a> {
         match (nodes, self.size) {
             (2, 4) => own.for_each(|(freedoms, matrix)| each_entry_of_pair::<2>(freedoms, matrix, add)),
             (2, 6) => own.for_each(|(freedoms, matrix)| each_entry_of_pair::<3>(freedoms, matrix, add)),
+            (1, _) => own.for_each(|(freedoms, matrix)| each_entry_of_one(freedoms, matrix, add)),
             _ => own.for_each(|(freedoms, matrix)| each_entry_of(nodes, freedoms, matrix, add)),
         }
     }
@@ -217,6 +218,14 @@ fn each_entry_of(nodes: usize, freedoms: &[usize], matrix: &[f64], add: &mut imp
                 (0..nodes).filter(|second| *second != first).for_each(|second| entry(first, second));
             }
         }
+    }
+}
+
+/// The entries of one node, in the same order.
+#[inline(always)]
+fn each_entry_of_one(freedoms: &[usize], matrix: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
+    for (row, values) in freedoms.iter().zip(matrix.chunks_exact(freedoms.len())) {
+        freedoms.iter().zip(values).for_each(|(column, value)| add(*row, *column, *value));
     }
 }
 

@@ -28,18 +28,52 @@ impl Spring {
         self.nodes.len() > 1
     }
 
-    /// The relative displacement `Δu`, with as many components as the space has dimensions.
-    fn relative(&self, displacement: &[f64]) -> SmallVec<[f64; 3]> {
+    /// The relative displacement `Δu`; the components of other dimensions are 0.
+    #[inline(always)]
+    fn relative(&self, displacement: &[f64]) -> [f64; 3] {
+        let mut relative = [0.0; 3];
         let (own, other) = displacement.split_at(displacement.len() / self.nodes.len());
-        match self.has_two_nodes() {
-            true => own.iter().zip(other).map(|(own, other)| own - other).collect(),
-            false => SmallVec::from_slice(own),
+        relative.iter_mut().zip(own).for_each(|(relative, own)| *relative = *own);
+        relative.iter_mut().zip(other).for_each(|(relative, other)| *relative -= other);
+        relative
+    }
+
+    /// The forces `K Δu`; those of other dimensions are 0, as there is no stiffness there.
+    #[inline(always)]
+    fn forces(&self, relative: &[f64; 3]) -> [f64; 3] {
+        self.stiffness.map(|row| row[0] * relative[0] + row[1] * relative[1] + row[2] * relative[2])
+    }
+
+    /// Writes the tangent in a space of `D` dimensions.
+    #[inline(always)]
+    fn write_stiffness_in<const D: usize>(&self, stiffness: &mut [f64]) {
+        if !self.has_two_nodes() {
+            let rows = stiffness.chunks_exact_mut(D).zip(&self.stiffness);
+            return rows.for_each(|(values, row)| values.copy_from_slice(&row[..D]));
+        }
+        let (upper, lower) = stiffness.split_at_mut(2 * D * D);
+        let rows = upper.chunks_exact_mut(2 * D).zip(lower.chunks_exact_mut(2 * D)).zip(&self.stiffness);
+        for ((upper, lower), row) in rows {
+            for column in 0..D {
+                (upper[column], upper[D + column]) = (row[column], -row[column]);
+                (lower[column], lower[D + column]) = (-row[column], row[column]);
+            }
         }
     }
 
-    fn forces(&self, relative: &[f64]) -> SmallVec<[f64; 3]> {
-        let force = |row: &[f64; 3]| row.iter().zip(relative).map(|(stiffness, motion)| stiffness * motion).sum();
-        self.stiffness.iter().take(relative.len()).map(force).collect()
+    /// Writes the sizes of forces in a space of `D` dimensions.
+    #[inline(always)]
+    fn write_force_sizes_in<const D: usize>(&self, displacement: &[f64], least: f64, sizes: &mut [f64]) {
+        let (own, other) = displacement.split_at(D);
+        let motions: [f64; D] = std::array::from_fn(|component| {
+            let other = other.get(component).map_or(least, |value| value.abs());
+            own[component].abs().max(other).max(least)
+        });
+        for sizes in sizes.chunks_exact_mut(D) {
+            for (size, stiffness) in sizes.iter_mut().zip(&self.stiffness) {
+                *size = (0..D).map(|column| stiffness[column].abs() * motions[column]).sum();
+            }
+        }
     }
 }
 
@@ -57,42 +91,31 @@ impl FiniteElement for Spring {
     #[inline(always)]
     fn write_force(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
         let forces = self.forces(&self.relative(displacement));
-        let (own, other) = force.split_at_mut(forces.len());
-        own.copy_from_slice(&forces);
+        let (own, other) = force.split_at_mut(force.len() / self.nodes.len());
+        own.iter_mut().zip(&forces).for_each(|(force, value)| *force = *value);
         other.iter_mut().zip(&forces).for_each(|(force, value)| *force = -value);
         forces.iter().fold(0.0, |largest, value| largest.max(value.abs()))
     }
 
     fn resultants(&self, displacement: &[f64]) -> Option<Resultants> {
-        let mut force = [0.0; 3];
-        force.iter_mut().zip(self.forces(&self.relative(displacement))).for_each(|(own, value)| *own = value);
-        Some(Resultants::Force(force))
+        Some(Resultants::Force(self.forces(&self.relative(displacement))))
     }
 
     #[inline(always)]
     fn write_stiffness(&self, displacement: &[f64], stiffness: &mut [f64]) {
-        let size = displacement.len();
-        let dimension = size / self.nodes.len();
-        for (row, values) in stiffness.chunks_exact_mut(size).enumerate() {
-            for (column, value) in values.iter_mut().enumerate() {
-                let sign = if row / dimension == column / dimension { 1.0 } else { -1.0 };
-                *value = sign * self.stiffness[row % dimension][column % dimension];
-            }
+        // The number of dimensions is known to the compiler.
+        match displacement.len() / self.nodes.len() {
+            2 => self.write_stiffness_in::<2>(stiffness),
+            _ => self.write_stiffness_in::<3>(stiffness),
         }
     }
 
     /// The force due to displacements of this size.
     #[inline(always)]
     fn write_force_sizes(&self, displacement: &[f64], least: f64, sizes: &mut [f64]) {
-        let dimension = displacement.len() / self.nodes.len();
-        let (own, other) = displacement.split_at(dimension);
-        let size = |component: usize| {
-            let other = other.get(component).map_or(least, |value| value.abs());
-            own[component].abs().max(other).max(least)
-        };
-        for (row, force) in sizes.iter_mut().enumerate() {
-            let stiffness = &self.stiffness[row % dimension];
-            *force = (0..dimension).map(|column| stiffness[column].abs() * size(column)).sum();
+        match displacement.len() / self.nodes.len() {
+            2 => self.write_force_sizes_in::<2>(displacement, least, sizes),
+            _ => self.write_force_sizes_in::<3>(displacement, least, sizes),
         }
     }
 

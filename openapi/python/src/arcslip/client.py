@@ -1,0 +1,341 @@
+"""A client of a running service, on Python's standard library alone.
+
+Each request is sent with a key, so that sending it twice queues one job; a service that is full or away is waited for; a
+stream that breaks off is resumed after the last increment received.
+"""
+
+from __future__ import annotations
+
+import http.client
+import json
+import os
+import time
+import urllib.error
+import urllib.parse
+import urllib.request
+import uuid
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Union
+
+from arcslip.errors import JobFailed, Refused, invalid
+from arcslip.model import Model, as_request, plain
+from arcslip.path import Path
+from arcslip.progress import shown
+
+#: Seconds between tries where the service does not say how long.
+PAUSE = 1.0
+#: Seconds until a silent connection counts as lost; the service sends something every 15 s.
+SILENCE = 60.0
+#: Answers after which the same request may succeed: full queue, full disk, service going down or away.
+PASSING = {429, 502, 503, 504, 507}
+#: What has not ended.
+UNDER_WAY = ("queued", "running")
+
+
+class Client:
+    """A service at `url`; `token` is sent as a bearer token, and is that of `ARCSLIP_TOKEN` unless given.
+
+    `patience`: seconds after which a service that does not answer, or does not take a request, is given up.
+    """
+
+    def __init__(self, url: str = "http://127.0.0.1:8080", token: Optional[str] = None, patience: float = 600.0):
+        self.url = url.rstrip("/")
+        self.patience = patience
+        token = token or os.environ.get("ARCSLIP_TOKEN")
+        self._headers = {"Authorization": f"Bearer {token}"} if token else {}
+
+    # Jobs -------------------------------------------------------------------------------------------------------------
+
+    def submit(self, model: Union[Model, Mapping[str, Any]], *, key: Optional[str] = None, **analysis: Any) -> "Job":
+        """Queues a job; `analysis` has settings, such as `max_increments=500`. Safe to repeat with the same `key`."""
+        request = as_request(model, analysis)
+        return Job(self, self.post("/v1/jobs", request, key), request)
+
+    def check(self, model: Union[Model, Mapping[str, Any]], **analysis: Any) -> Dict[str, Any]:
+        """The plan of a model: its scales, what it does not need, and warnings. Nothing is queued."""
+        return self.post("/v1/jobs?validate=true", as_request(model, analysis))
+
+    def solve(self, model: Union[Model, Mapping[str, Any]], *, progress: bool = False, **analysis: Any) -> Path:
+        """Queues a job and waits for its path; `progress` shows a bar (tqdm)."""
+        return self.submit(model, **analysis).path(progress=progress)
+
+    def explore(
+        self, model: Union[Model, Mapping[str, Any]], depth: int = 1, max_jobs: int = 100, **analysis: Any
+    ) -> "Job":
+        """Queues a job whose directions not taken are followed by jobs of their own, `depth` times in turn;
+        `Job.branches` lists those."""
+        return self.submit(model, explore={"depth": depth, "max_jobs": max_jobs}, **analysis)
+
+    def job(self, identity: str) -> "Job":
+        """A job by its `id`."""
+        return Job(self, self.get(f"/v1/jobs/{identity}"))
+
+    def jobs(self, **filters: Any) -> Iterator["Job"]:
+        """Jobs, newest first; filtered by `status`, `parent` or `sweep`."""
+        return (Job(self, found) for found in self._pages("/v1/jobs", "jobs", filters))
+
+    def scene(self, name: str) -> Dict[str, Any]:
+        """The request of a built-in scene."""
+        return self.get(f"/v1/scenes/{urllib.parse.quote(name)}")
+
+    # Sweeps and studies -----------------------------------------------------------------------------------------------
+
+    def sweep(
+        self,
+        model: Union[Model, Mapping[str, Any]],
+        replace: Mapping[str, Sequence[Any]],
+        *,
+        combine: str = "grid",
+        key: Optional[str] = None,
+        **analysis: Any,
+    ) -> "Sweep":
+        """Queues a path for each combination of values at JSON pointers, such as
+        `{"/model/contacts/0/friction": [0.1, 0.3]}`."""
+        request = as_request(model, analysis)
+        values = {pointer: plain(list(own) if not hasattr(own, "tolist") else own) for pointer, own in replace.items()}
+        request["sweep"] = {"replace": values, "combine": combine}
+        return Sweep(self, self.post("/v1/sweeps", request, key))
+
+    def study(
+        self, model: Union[Model, Mapping[str, Any]], settings: Optional[Mapping[str, Any]] = None,
+        *, key: Optional[str] = None, **analysis: Any
+    ) -> "Study":
+        """Queues a study of error against run time; `settings` are those of the request's member `study`."""
+        request = as_request(model, analysis)
+        request["study"] = plain(settings or {})
+        return Study(self, self.post("/v1/studies", request, key))
+
+    # Calls ------------------------------------------------------------------------------------------------------------
+
+    def get(self, path: str) -> Any:
+        """The JSON that a call answers."""
+        return json.loads(self.read("GET", path))
+
+    def post(self, path: str, request: Any, key: Optional[str] = None) -> Any:
+        """The JSON that a posted request answers; mistakes in it raise `InvalidModel`."""
+        headers = {"Content-Type": "application/json", "Idempotency-Key": key or str(uuid.uuid4())}
+        try:
+            return json.loads(self.read("POST", path, json.dumps(request).encode(), headers))
+        except Refused as refused:
+            if refused.status == 422 and refused.problem.get("errors"):
+                raise invalid(request, refused.problem["errors"]) from None
+            raise
+
+    def read(self, method: str, path: str, body: Optional[bytes] = None, headers: Mapping[str, str] = {}) -> bytes:
+        """The bytes that a call answers. One that breaks off is asked for again."""
+        given_up = time.monotonic() + self.patience
+        while True:
+            try:
+                with self.open(method, path, body, headers) as answer:
+                    return answer.read()
+            except (OSError, http.client.HTTPException):
+                if time.monotonic() > given_up:
+                    raise
+                time.sleep(PAUSE)
+
+    def open(self, method: str, path: str, body: Optional[bytes] = None, headers: Mapping[str, str] = {}) -> Any:
+        """The answer to a call, once the service takes it. Raises `Refused` where it never will, and what stood in the
+        way where that lasts longer than `patience`."""
+        given_up = time.monotonic() + self.patience
+        asked = urllib.request.Request(self.url + path, body, {**self._headers, **headers}, method=method)
+        while True:
+            try:
+                return urllib.request.urlopen(asked, timeout=SILENCE)
+            except urllib.error.HTTPError as answer:
+                if answer.code not in PASSING or time.monotonic() > given_up:
+                    raise Refused(answer.code, problem_of(answer.read())) from None
+                time.sleep(pause_of(answer.headers.get("Retry-After")))
+            except (OSError, http.client.HTTPException):
+                # Nobody answers: it may be starting.
+                if time.monotonic() > given_up:
+                    raise
+                time.sleep(PAUSE)
+
+    def _pages(self, path: str, member: str, filters: Mapping[str, Any]) -> Iterator[Dict[str, Any]]:
+        asked = {name: value for name, value in filters.items() if value is not None}
+        while True:
+            page = self.get(f"{path}?{urllib.parse.urlencode(asked)}" if asked else path)
+            yield from page[member]
+            if page["next_cursor"] is None:
+                return
+            asked["cursor"] = page["next_cursor"]
+
+    def __repr__(self) -> str:
+        return f"<Client of {self.url}>"
+
+
+def problem_of(text: bytes) -> Dict[str, Any]:
+    try:
+        problem = json.loads(text or b"{}")
+    except ValueError:
+        # Of a proxy.
+        return {"detail": text.decode(errors="replace")[:500]}
+    return problem if isinstance(problem, dict) else {"detail": str(problem)}
+
+
+def pause_of(header: Optional[str]) -> float:
+    try:
+        return max(float(header or PAUSE), 0.0)
+    except ValueError:
+        # A date.
+        return PAUSE
+
+
+class Resource:
+    """Something that a service works on: `record` is its state as it was last read."""
+
+    folder = ""
+
+    def __init__(self, client: Client, record: Dict[str, Any]):
+        self.client, self.record = client, record
+
+    @property
+    def id(self) -> str:
+        return self.record["id"]
+
+    @property
+    def address(self) -> str:
+        return f"/v1/{self.folder}/{self.id}"
+
+    def refresh(self) -> Dict[str, Any]:
+        """Reads the state again."""
+        self.record = self.client.get(self.address)
+        return self.record
+
+    @property
+    def status(self) -> str:
+        """`queued`, `running`, `completed`, `stopped`, `cancelled` or `failed`, read again unless it has ended."""
+        if self.record["status"] in UNDER_WAY:
+            self.refresh()
+        return self.record["status"]
+
+    def wait(self, every: float = 0.2) -> str:
+        """Waits until it has ended; returns the status."""
+        while self.status in UNDER_WAY:
+            time.sleep(every)
+            every = min(1.5 * every, 5.0)
+        return self.status
+
+    def cancel(self) -> None:
+        """Stops it; what is stored stays."""
+        self.client.read("POST", f"{self.address}/cancel")
+
+    def delete(self) -> None:
+        """Stops it and deletes what is stored."""
+        self.client.read("DELETE", self.address)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.id}: {self.record['status']}>"
+
+
+class Job(Resource):
+    """A job. Iterating over it gives its increments as they converge."""
+
+    folder = "jobs"
+
+    def __init__(self, client: Client, record: Dict[str, Any], request: Optional[Dict[str, Any]] = None):
+        super().__init__(client, record)
+        self._request = request
+
+    @property
+    def request(self) -> Dict[str, Any]:
+        """The request; of a job that follows another, that of the other."""
+        if self._request is None:
+            self._request = self.client.get(f"{self.address}/request")
+        return self._request
+
+    def increments(self, after: Optional[int] = None) -> Iterator[Dict[str, Any]]:
+        """Increments as they converge, each once, until the job has ended, through restarts of the service. `after`:
+        the index of the last one that is known already."""
+        last = after
+        while True:
+            # Once it has ended, what a whole answer holds is all there is.
+            ended = self.status not in UNDER_WAY
+            headers = {"Accept": "application/x-ndjson"}
+            if last is not None:
+                headers["Last-Event-ID"] = str(last)
+            try:
+                with self.client.open("GET", f"{self.address}/stream", headers=headers) as lines:
+                    for line in lines:
+                        increment = json.loads(line)
+                        last = increment["index"]
+                        yield increment
+            except (OSError, ValueError, http.client.HTTPException):
+                # It broke off, perhaps within a line.
+                continue
+            if ended:
+                return
+
+    def __iter__(self) -> Iterator[Dict[str, Any]]:
+        return self.increments()
+
+    def path(self, progress: bool = False) -> Path:
+        """The whole path, once the job has ended. Raises `JobFailed` where it failed; its increments can still be
+        iterated over."""
+        most = self.record.get("progress", {}).get("max_increments")
+        increments = list(shown(self.increments(), most, progress))
+        self.refresh()
+        if self.record["status"] == "failed":
+            raise JobFailed(f"job {self.id} failed: {self.record.get('error')}")
+        return Path(self.request, increments, self.record.get("report"), self.record.get("stop_reason"))
+
+    def follow(
+        self, increment: int, direction: int, max_increments: Optional[int] = None, *, key: Optional[str] = None
+    ) -> "Job":
+        """Queues a job along a direction of an increment, by its place in the increment's `directions`."""
+        request = {"increment": int(increment), "direction": int(direction)}
+        if max_increments is not None:
+            request["max_increments"] = int(max_increments)
+        return Job(self.client, self.client.post(f"{self.address}/follow", request, key), self.request)
+
+    def branches(self) -> List["Job"]:
+        """The jobs that follow directions of this one."""
+        return list(self.client.jobs(parent=self.id))
+
+    def download(self, name: str) -> bytes:
+        """The stored increments as a file: `path.csv`, `results.pvd` or `results.parquet` (zip files)."""
+        return self.client.read("GET", f"{self.address}/{name}")
+
+
+class Sweep(Resource):
+    """A sweep: one path for each combination of values."""
+
+    folder = "sweeps"
+
+    def rows(self) -> List[Dict[str, Any]]:
+        """The runs that have ended, in their order: `values`, `stop_reason`, `first_limit` and so on."""
+        rows: List[Dict[str, Any]] = []
+        after = ""
+        while True:
+            page = self.client.get(f"{self.address}/rows{after}")
+            if not page["rows"]:
+                return sorted(rows, key=lambda row: row["run"])
+            rows += page["rows"]
+            after = f"?after={page['next_after']}"
+
+    def to_frame(self) -> Any:
+        """The runs as a table of pandas, with a column for each parameter."""
+        import pandas
+
+        pointers = [parameter["pointer"] for parameter in self.refresh()["parameters"]]
+        limits = ("kind", "stage", "load_factor", "arc_length", "increment")
+        table = []
+        for row in self.rows():
+            limit = row.get("first_limit") or {}
+            values = dict(zip(pointers, row["values"]))
+            own = {name: row.get(name) for name in ("run", "job", "status", "stop_reason", "last_index")}
+            table.append({**own, **values, **{f"limit.{name}": limit.get(name) for name in limits}})
+        return pandas.DataFrame(table)
+
+    def jobs(self) -> List[Job]:
+        """The runs as jobs."""
+        return list(self.client.jobs(sweep=self.id))
+
+
+class Study(Resource):
+    """A study of error against run time."""
+
+    folder = "studies"
+
+    def report(self) -> Dict[str, Any]:
+        """The rows and references so far."""
+        return self.refresh().get("report") or {}

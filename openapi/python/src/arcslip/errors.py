@@ -1,0 +1,81 @@
+"""What can go wrong, each with where and what."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, NamedTuple, Optional, Sequence
+
+#: Mistakes that a message shows; the exception has all of them.
+SHOWN = 20
+#: Characters of a value that a message shows.
+LONGEST = 120
+
+
+class ArcslipError(Exception):
+    """Anything that arcslip refuses or fails at."""
+
+
+class Mistake(NamedTuple):
+    """A mistake in a request: the JSON pointer (RFC 6901) of its place, what is wrong, and the value that stands there."""
+
+    pointer: str
+    detail: str
+    #: `None` where nothing stands there.
+    value: Any
+
+    def __str__(self) -> str:
+        text = f"{self.pointer or 'the request'}: {self.detail}"
+        if self.value is None:
+            return text
+        value = repr(self.value)
+        return f"{text}\n    here: {value if len(value) <= LONGEST else value[:LONGEST] + '...'}"
+
+
+class InvalidModel(ArcslipError, ValueError):
+    """A model or its analysis has mistakes, which `mistakes` lists."""
+
+    def __init__(self, mistakes: Sequence[Mistake]):
+        self.mistakes = list(mistakes)
+        shown = [str(mistake) for mistake in self.mistakes[:SHOWN]]
+        if len(self.mistakes) > SHOWN:
+            shown.append(f"and {len(self.mistakes) - SHOWN} more")
+        super().__init__("\n".join(shown))
+
+
+class Refused(ArcslipError):
+    """A service refuses a request; `problem` is its `application/problem+json` (RFC 9457), `status` the HTTP status."""
+
+    def __init__(self, status: int, problem: Dict[str, Any]):
+        self.status, self.problem = status, problem
+        super().__init__(f"{status}: {problem.get('detail') or problem.get('title') or 'no reason is given'}")
+
+
+class JobFailed(ArcslipError):
+    """A job, study or sweep failed; the increments so far can still be read from the job."""
+
+
+class ProgramNotFound(ArcslipError):
+    """The program `arcslip` is not found."""
+
+
+class ProgramFailed(ArcslipError):
+    """The program `arcslip` ended without a path."""
+
+
+def value_at(document: Any, pointer: str) -> Optional[Any]:
+    """The value at a JSON pointer; `None` where there is none."""
+    for step in pointer.split("/")[1:]:
+        step = step.replace("~1", "/").replace("~0", "~")
+        if isinstance(document, dict) and step in document:
+            document = document[step]
+        elif isinstance(document, list) and step.isdigit() and int(step) < len(document):
+            document = document[int(step)]
+        else:
+            return None
+    return document
+
+
+def invalid(request: Any, errors: Sequence[Dict[str, Any]]) -> InvalidModel:
+    """The exception of the `errors` that the program or a service lists."""
+    listed = [(error.get("pointer", ""), error.get("detail", "")) for error in errors]
+    # The whole request as a value would tell nothing.
+    return InvalidModel([Mistake(at, detail, value_at(request, at) if at else None) for at, detail in listed])

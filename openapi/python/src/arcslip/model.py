@@ -1,0 +1,226 @@
+"""Builds requests: what `POST /v1/jobs` and `arcslip solve` take."""
+
+from __future__ import annotations
+
+import copy
+import json
+import numbers
+from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Union
+
+#: Anything that holds numbers in order: a list, a tuple, an array of numpy.
+Vector = Sequence[float]
+#: A node by its name, or by its place among the nodes, from 0.
+Node = Union[str, int]
+
+
+def plain(value: Any) -> Any:
+    """The value with lists in place of tuples and of numpy's arrays, and Python's numbers in place of numpy's."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(item) for item in value]
+    return value
+
+
+class Model:
+    """A model that grows call by call; each call checks nothing but names, and the program checks the whole.
+
+    `dimension` is 2 or 3. Quantities are in any consistent units; `units` labels axes and tables, such as
+    `{"length": "m", "force": "kN"}`.
+    """
+
+    def __init__(self, dimension: int, name: Optional[str] = None, units: Optional[Mapping[str, str]] = None):
+        self.dimension = dimension
+        self.name = name
+        self.units = None if units is None else dict(units)
+        self._nodes: Dict[str, List[float]] = {}
+        self._supports: Dict[str, List[str]] = {}
+        self._elements: List[Dict[str, Any]] = []
+        self._obstacles: Dict[str, Dict[str, Any]] = {}
+        self._contacts: List[Dict[str, Any]] = []
+        self._stages: List[Dict[str, Any]] = []
+
+    # Nodes ------------------------------------------------------------------------------------------------------------
+
+    def node(self, name: str, *coordinates: float) -> str:
+        """Adds a node; returns its name."""
+        if name in self._nodes:
+            raise ValueError(f"there is a node {name!r} already")
+        # One array of coordinates will do as well.
+        values = plain(coordinates[0]) if len(coordinates) == 1 and not is_number(coordinates[0]) else plain(coordinates)
+        self._nodes[name] = [float(value) for value in values]
+        return name
+
+    def nodes(self, coordinates: Union[Mapping[str, Vector], Iterable[Vector]], prefix: str = "n") -> List[str]:
+        """Adds nodes from a dict by name, or from an array with a row for each; returns their names.
+
+        Rows are named by their place among all nodes: `n0`, `n1` and so on.
+        """
+        if isinstance(coordinates, Mapping):
+            return [self.node(str(name), *plain(row)) for name, row in coordinates.items()]
+        first = len(self._nodes)
+        return [self.node(f"{prefix}{first + place}", *plain(row)) for place, row in enumerate(coordinates)]
+
+    def support(self, nodes: Union[Node, Iterable[Node]], components: Union[str, Iterable[str]] = "") -> None:
+        """Holds components such as `"xy"` of a node or of several; all of them unless given."""
+        held = list(components) or list("xyz"[: self.dimension])
+        several = [nodes] if isinstance(nodes, str) or not isinstance(nodes, Iterable) else nodes
+        for node in several:
+            own = self._supports.setdefault(self.node_name(node), [])
+            own.extend(component for component in held if component not in own)
+
+    def node_name(self, node: Node) -> str:
+        """The name of a node that is given by its name or its place."""
+        if isinstance(node, str):
+            return node
+        names = list(self._nodes)
+        if not -len(names) <= int(node) < len(names):
+            raise IndexError(f"there is no node {node}; the model has {len(names)}")
+        return names[int(node)]
+
+    # Elements ---------------------------------------------------------------------------------------------------------
+
+    def bar(self, first: Node, second: Node, axial_stiffness: float, **more: Any) -> int:
+        """Adds a bar with the axial stiffness EA; returns its place among the elements.
+
+        `more`: `rest_length`, `prestress`, `strain` (`"engineering"`, `"green"`, `"log"`), `name`.
+        """
+        nodes = [self.node_name(first), self.node_name(second)]
+        return self._element({"kind": "bar", "nodes": nodes, "axial_stiffness": plain(axial_stiffness), **plain(more)})
+
+    def bars(self, pairs: Iterable[Sequence[Node]], axial_stiffness: Union[float, Vector], **more: Any) -> List[int]:
+        """Adds bars from pairs of nodes, by name or by place; `axial_stiffness` is one number, or one for each."""
+        pairs = [list(pair) for pair in plain_pairs(pairs)]
+        stiffnesses = plain(axial_stiffness)
+        if not isinstance(stiffnesses, list):
+            stiffnesses = [stiffnesses] * len(pairs)
+        if len(stiffnesses) != len(pairs):
+            raise ValueError(f"there are {len(pairs)} bars and {len(stiffnesses)} axial stiffnesses")
+        return [self.bar(first, second, own, **more) for (first, second), own in zip(pairs, stiffnesses)]
+
+    def spring(self, first: Node, second: Optional[Node] = None, *, stiffness: Any, **more: Any) -> int:
+        """Adds a spring between two nodes, or between one and the ground; returns its place among the elements.
+
+        `stiffness` is a symmetric matrix, or one number for the same stiffness in every direction.
+        """
+        matrix = plain(stiffness)
+        if is_number(matrix):
+            matrix = [[matrix if row == column else 0.0 for column in range(self.dimension)] for row in range(self.dimension)]
+        nodes = [self.node_name(node) for node in (first, second) if node is not None]
+        return self._element({"kind": "spring", "nodes": nodes, "stiffness": matrix, **plain(more)})
+
+    def _element(self, element: Dict[str, Any]) -> int:
+        self._elements.append(element)
+        return len(self._elements) - 1
+
+    # Contacts ---------------------------------------------------------------------------------------------------------
+
+    def plane(self, name: str, point: Vector, normal: Vector) -> str:
+        """Adds a half-space as obstacle; `normal` points into its free side, and need not have unit length."""
+        return self._obstacle(name, {"kind": "plane", "point": plain(point), "normal": plain(normal)})
+
+    def ball(self, name: str, center: Vector, radius: float, side: str = "outside") -> str:
+        """Adds a circle or sphere as obstacle; nodes stay `"outside"` or `"inside"` of it."""
+        return self._obstacle(name, {"kind": "ball", "center": plain(center), "radius": plain(radius), "side": side})
+
+    def _obstacle(self, name: str, obstacle: Dict[str, Any]) -> str:
+        if name in self._obstacles:
+            raise ValueError(f"there is an obstacle {name!r} already")
+        self._obstacles[name] = obstacle
+        return name
+
+    def contact(self, node: Node, obstacle: str, friction: float = 0.0) -> int:
+        """Adds a contact of a node with an obstacle; returns its place among the contacts."""
+        contact = {"node": self.node_name(node), "obstacle": obstacle, "friction": plain(friction)}
+        self._contacts.append(contact)
+        return len(self._contacts) - 1
+
+    # Stages -----------------------------------------------------------------------------------------------------------
+
+    def stage(
+        self,
+        name: str,
+        forces: Optional[Mapping[Node, Vector]] = None,
+        displacements: Optional[Mapping[Node, Vector]] = None,
+        obstacle_motion: Optional[Mapping[str, Vector]] = None,
+        until: Optional[Mapping[str, Any]] = None,
+    ) -> str:
+        """Adds a stage. Its pattern is multiplied by the load factor, which begins at 0; `until` says where it ends,
+        such as `{"load_above": 1}` or `{"displacement": {"node": "tip", "component": "y", "below": -0.2}}`."""
+        stage: Dict[str, Any] = {"name": name}
+        for key, pattern in (("forces", forces), ("displacements", displacements)):
+            if pattern is not None:
+                stage[key] = {self.node_name(node): plain(vector) for node, vector in pattern.items()}
+        if obstacle_motion is not None:
+            stage["obstacle_motion"] = plain(obstacle_motion)
+        if until is not None:
+            stage["until"] = plain(until)
+        self._stages.append(stage)
+        return name
+
+    # Out and in -------------------------------------------------------------------------------------------------------
+
+    def request(self, **analysis: Any) -> Dict[str, Any]:
+        """The request as it is posted; `analysis` has the settings, such as `max_increments=500`."""
+        model: Dict[str, Any] = {"dimension": self.dimension}
+        for key, value in (("name", self.name), ("units", self.units)):
+            if value is not None:
+                model[key] = value
+        model.update(nodes=self._nodes, elements=self._elements, stages=self._stages)
+        for key, members in (("supports", self._supports), ("obstacles", self._obstacles), ("contacts", self._contacts)):
+            if members:
+                model[key] = members
+        request: Dict[str, Any] = {"model": copy.deepcopy(model)}
+        if analysis:
+            request["analysis"] = plain(analysis)
+        return request
+
+    def to_json(self, **analysis: Any) -> str:
+        """The request as text."""
+        return json.dumps(self.request(**analysis), indent=1)
+
+    @classmethod
+    def from_meshio(
+        cls, mesh: Any, axial_stiffness: Union[float, Vector], dimension: Optional[int] = None, prefix: str = "n"
+    ) -> "Model":
+        """A truss of the lines of a mesh of meshio: a node for each point, and a bar for each cell `line`.
+
+        Without `dimension` points that all lie in the plane z = 0 give a model in the plane.
+        """
+        points = [list(map(float, row)) for row in plain(mesh.points)]
+        if dimension is None:
+            dimension = 3 if any(len(row) > 2 and row[2] != 0.0 for row in points) else 2
+        model = cls(dimension)
+        model.nodes(((row + [0.0] * 3)[:dimension] for row in points), prefix)
+        others = sorted({block.type for block in mesh.cells} - {"line", "vertex"})
+        if others:
+            raise ValueError(f"the mesh has cells {', '.join(others)}; lines alone can be bars")
+        pairs = [pair for block in mesh.cells if block.type == "line" for pair in plain(block.data)]
+        if not pairs:
+            raise ValueError("the mesh has no cells `line`")
+        model.bars(pairs, axial_stiffness)
+        return model
+
+    def __repr__(self) -> str:
+        counts = f"{len(self._nodes)} nodes, {len(self._elements)} elements, {len(self._contacts)} contacts"
+        return f"<Model in {self.dimension}D: {counts}, stages {[stage['name'] for stage in self._stages]}>"
+
+
+def is_number(value: Any) -> bool:
+    return isinstance(value, numbers.Number)
+
+
+def plain_pairs(pairs: Iterable[Sequence[Node]]) -> List[List[Node]]:
+    return [plain(list(pair)) if not hasattr(pair, "tolist") else pair.tolist() for pair in pairs]
+
+
+def as_request(model: Union[Model, Mapping[str, Any]], analysis: Mapping[str, Any]) -> Dict[str, Any]:
+    """The request of a model, or of a request in which settings are replaced."""
+    if isinstance(model, Model):
+        return model.request(**analysis)
+    request = dict(plain(model))
+    if analysis:
+        request["analysis"] = {**request.get("analysis", {}), **plain(analysis)}
+    return request

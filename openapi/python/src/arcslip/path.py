@@ -1,0 +1,207 @@
+"""A path: its increments as lists, tables, pictures and meshes."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union, overload
+
+Increment = Dict[str, Any]
+
+AXES = "xyz"
+
+
+class Path:
+    """The increments of a path, dicts as the manual's chapter *Results* describes them, with the request and the report."""
+
+    def __init__(
+        self,
+        request: Mapping[str, Any],
+        increments: Sequence[Increment],
+        report: Optional[Mapping[str, Any]] = None,
+        stop_reason: Optional[str] = None,
+    ):
+        self.request = dict(request)
+        self.increments = list(increments)
+        self.report = dict(report) if report else {}
+        #: Why the path ended, such as `stages_completed`.
+        self.stop_reason = stop_reason
+
+    def __len__(self) -> int:
+        return len(self.increments)
+
+    def __iter__(self) -> Iterator[Increment]:
+        return iter(self.increments)
+
+    @overload
+    def __getitem__(self, place: int) -> Increment: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> List[Increment]: ...
+
+    def __getitem__(self, place: Union[int, slice]) -> Any:
+        return self.increments[place]
+
+    @property
+    def events(self) -> List[Increment]:
+        """The increments at which something happens."""
+        return [increment for increment in self.increments if increment["point"]["kind"] != "regular"]
+
+    @property
+    def limit_points(self) -> List[Increment]:
+        """The smooth and nonsmooth limit points."""
+        kinds = ("smooth_limit", "nonsmooth_limit")
+        return [increment for increment in self.increments if increment["point"]["kind"] in kinds]
+
+    def directions(self, taken: Optional[bool] = None) -> Iterator[Tuple[int, int, Dict[str, Any]]]:
+        """The feasible directions: index of the increment, place in its list, and the direction; those that the path
+        takes, or does not take, where `taken` says so."""
+        for increment in self.increments:
+            for place, direction in enumerate(increment.get("directions") or []):
+                if taken is None or direction["taken"] == taken:
+                    yield increment["index"], place, direction
+
+    # Quantities -------------------------------------------------------------------------------------------------------
+
+    def row(self, increment: Increment) -> Dict[str, Any]:
+        """The quantities of an increment by name: the columns of the CSV table."""
+        axes = AXES[: self.dimension]
+        row = {name: increment[name] for name in ("index", "stage", "load_factor", "arc_length", "step")}
+        point = increment["point"]
+        row.update(point=point["kind"], bifurcation=point["bifurcation"], event=point["event"])
+        for node, vector in increment["displacements"].items():
+            row.update(zip((f"{node}.{axis}" for axis in axes), vector))
+        for contact in increment["contacts"]:
+            own = f"{contact['node']}/{contact['obstacle']}"
+            for name, value in contact.items():
+                if name in ("node", "obstacle"):
+                    continue
+                if isinstance(value, list):
+                    ends = axes if name == "reaction" else range(1, len(value) + 1)
+                    row.update(zip((f"{own}.{name}.{end}" for end in ends), value))
+                else:
+                    row[f"{own}.{name}"] = value
+        for element in increment.get("elements") or []:
+            own = f"elements/{element.get('name', element['element'])}"
+            if "axial_force" in element:
+                row[f"{own}.axial_force"] = element["axial_force"]
+            if "force" in element:
+                row.update(zip((f"{own}.force.{axis}" for axis in axes), element["force"]))
+        for node, vector in (increment.get("supports") or {}).items():
+            row.update(zip((f"{node}.reaction.{axis}" for axis in axes), vector))
+        row.update(zip((f"applied_force_{axis}" for axis in axes), increment.get("applied_forces") or []))
+        energy = increment["energy"]
+        row.update(external_work=energy["external_work"], strain_energy=energy["strain"], dissipated=energy["dissipated"])
+        row.update(increment.get("diagnostics") or {})
+        row.update((f"measure.{name}", value) for name, value in (increment.get("measure") or {}).items())
+        return row
+
+    def column(self, name: str) -> List[Any]:
+        """A quantity along the path, such as `load_factor`, `tip.y` or `tip/floor.gap`; `None` where an increment does
+        not have it."""
+        rows = [self.row(increment) for increment in self.increments]
+        if not any(name in row for row in rows):
+            known = sorted({known for row in rows for known in row})
+            near = [known for known in known if name.split(".")[0] in known][:10] or known[:10]
+            raise KeyError(f"no increment has {name!r}; known are {', '.join(near)} ...")
+        return [row.get(name) for row in rows]
+
+    @property
+    def dimension(self) -> int:
+        return int(self.request["model"]["dimension"])
+
+    def to_frame(self) -> Any:
+        """The path as a table of pandas, with a row for each increment and the columns of the CSV table."""
+        import pandas
+
+        return pandas.DataFrame([self.row(increment) for increment in self.increments])
+
+    # Files ------------------------------------------------------------------------------------------------------------
+
+    def save(self, file: Any) -> None:
+        """Writes the increments, one JSON object a line, as `arcslip solve --out path.ndjson` does."""
+        with open(file, "w", encoding="utf-8") as lines:
+            lines.writelines(json.dumps(increment, separators=(",", ":")) + "\n" for increment in self.increments)
+
+    @classmethod
+    def load(cls, file: Any, request: Mapping[str, Any]) -> "Path":
+        """Reads what `save` or the program wrote, with the request of the path."""
+        with open(file, encoding="utf-8") as lines:
+            return cls(request, [json.loads(line) for line in lines])
+
+    # Pictures ---------------------------------------------------------------------------------------------------------
+
+    def of_stage(self, stage: str) -> "Path":
+        """The part of the path in one stage."""
+        own = [increment for increment in self.increments if increment["stage"] == stage]
+        if not own:
+            raise KeyError(f"the path has no stage {stage!r}; it has {sorted({row['stage'] for row in self.increments})}")
+        return Path(self.request, own, self.report, self.stop_reason)
+
+    def plot(
+        self, x: Optional[str] = None, y: str = "load_factor", ax: Any = None, stage: Optional[str] = None, **style: Any
+    ) -> Any:
+        """Draws one quantity against another (matplotlib), along the path or along one stage; returns the axes.
+
+        `x` is the displacement that grows most unless given. Events are marked by their kind, and descending stretches
+        whose points are bifurcations are dashed.
+        """
+        from arcslip.picture import draw
+
+        return draw(self if stage is None else self.of_stage(stage), x, y, ax, style)
+
+    def largest_displacement(self) -> str:
+        """The name of the displacement component that grows largest."""
+        largest: Dict[str, float] = {}
+        for increment in self.increments:
+            for node, vector in increment["displacements"].items():
+                for axis, value in zip(AXES, vector):
+                    name = f"{node}.{axis}"
+                    largest[name] = max(largest.get(name, 0.0), abs(value))
+        if not largest:
+            raise ValueError("no displacement is recorded")
+        return max(largest, key=lambda name: largest[name])
+
+    def to_meshio(self, place: int = -1) -> Any:
+        """The structure at an increment, by its place in the path, as a mesh of meshio: points where the nodes were,
+        their displacements as point data, axial forces of bars as cell data."""
+        import meshio
+
+        increment, model = self.increments[place], self.request["model"]
+        nodes = list(model["nodes"])
+
+        def in_space(vector: Sequence[float]) -> List[float]:
+            return [float(value) for value in vector] + [0.0] * (3 - len(vector))
+
+        points = [in_space(model["nodes"][node]) for node in nodes]
+        nothing = [float("nan")] * 3
+        displacement = [
+            in_space(increment["displacements"][node]) if node in increment["displacements"] else nothing for node in nodes
+        ]
+        numbers = {node: number for number, node in enumerate(nodes)}
+        states = {state["element"]: state for state in increment.get("elements") or []}
+        lines: List[List[int]] = []
+        ends: List[List[int]] = []
+        axial: List[float] = []
+        of_ends: List[float] = []
+        for place_of_element, element in enumerate(model["elements"]):
+            joined = [numbers[node] for node in element["nodes"]]
+            force = states.get(place_of_element, {}).get("axial_force", float("nan"))
+            (lines if len(joined) == 2 else ends).append(joined)
+            (axial if len(joined) == 2 else of_ends).append(force)
+        cells = [(kind, own) for kind, own in (("line", lines), ("vertex", ends)) if own]
+        data = [own for own in (axial, of_ends) if own]
+        import numpy
+
+        return meshio.Mesh(
+            numpy.array(points),
+            [(kind, numpy.array(own)) for kind, own in cells],
+            point_data={"displacement": numpy.array(displacement)},
+            cell_data={"axial_force": [numpy.array(own) for own in data]},
+        )
+
+    def __repr__(self) -> str:
+        if not self.increments:
+            return "<Path without increments>"
+        last = self.increments[-1]
+        end = self.stop_reason or "under way"
+        return f"<Path of {len(self)} increments to {last['load_factor']:.6g} in stage {last['stage']!r}: {end}>"

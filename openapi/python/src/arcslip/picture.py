@@ -1,0 +1,83 @@
+"""Pictures of paths, by matplotlib."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, List, Optional, Tuple
+
+#: Marker and name of each kind of point.
+MARKERS = {
+    "smooth_limit": ("^", "smooth limit point"),
+    "nonsmooth_limit": ("D", "nonsmooth limit point"),
+    "contact_change": ("o", "contact change"),
+    "smooth_bifurcation": ("*", "smooth bifurcation point"),
+}
+FALLING = "falling, bifurcation points"
+#: Line of stretches that ascend or whose direction is the only one, and of descending stretches of bifurcation points.
+LINES = {False: "-", True: "--"}
+
+
+def draw(path: Any, x: Optional[str], y: str, ax: Any, style: Dict[str, Any]) -> Any:
+    from matplotlib import pyplot
+
+    x = x or path.largest_displacement()
+    if ax is None:
+        _, ax = pyplot.subplots()
+    across, up = path.column(x), path.column(y)
+    color = style.pop("color", None) or ax._get_lines.get_next_color()
+    label = style.pop("label", None)
+    for is_dashed, first, last in stretches(path.increments):
+        ax.plot(across[first:last], up[first:last], LINES[is_dashed], color=color, label=label, **style)
+        label = None
+    seen: Dict[str, Tuple[List[Any], List[Any]]] = {}
+    for place, increment in enumerate(path.increments):
+        kind = increment["point"]["kind"]
+        if kind in MARKERS:
+            places = seen.setdefault(kind, ([], []))
+            places[0].append(across[place])
+            places[1].append(up[place])
+    if any(is_dashed for is_dashed, _, _ in stretches(path.increments)):
+        # A line without points explains the dashes.
+        ax.plot([], [], "--", color=color, label=None if FALLING in ax.get_legend_handles_labels()[1] else FALLING)
+    named = set(ax.get_legend_handles_labels()[1])
+    for kind, (horizontal, vertical) in seen.items():
+        marker, name = MARKERS[kind]
+        ax.plot(horizontal, vertical, marker, color=color, label=None if name in named else name)
+    ax.set_xlabel(with_unit(path, x))
+    ax.set_ylabel(with_unit(path, y))
+    if ax.get_legend_handles_labels()[1]:
+        ax.legend()
+    name = path.request["model"].get("name")
+    if name and not ax.get_title():
+        ax.set_title(name)
+    return ax
+
+
+def stretches(increments: List[Dict[str, Any]]) -> List[Tuple[bool, int, int]]:
+    """Stretches of one stage as (whether the load falls along bifurcation points, first place, place past the last);
+    neighbours share a point."""
+    found: List[Tuple[bool, int, int]] = []
+    for place in range(1, len(increments)):
+        before, here = increments[place - 1], increments[place]
+        if here["stage"] != before["stage"]:
+            continue
+        descends = here["load_factor"] < before["load_factor"]
+        is_dashed = descends and before["point"]["bifurcation"]
+        if found and found[-1][0] == is_dashed and found[-1][2] == place:
+            found[-1] = (is_dashed, found[-1][1], place + 1)
+        else:
+            found.append((is_dashed, place - 1, place + 1))
+    return found
+
+
+def with_unit(path: Any, name: str) -> str:
+    """The name of a quantity with its unit, where the model names units."""
+    units = path.request["model"].get("units") or {}
+    last = name.rsplit(".", 1)[-1]
+    if "/" not in name and last in ("x", "y", "z") and ".reaction." not in name and "length" in units:
+        return f"{name} ({units['length']})"
+    of_force = last in ("axial_force", "normal_reaction") or ".reaction." in name or name.startswith("applied_force")
+    if of_force and "force" in units:
+        return f"{name} ({units['force']})"
+    if last in ("gap",) and "length" in units:
+        return f"{name} ({units['length']})"
+    return name.replace("load_factor", "load factor")

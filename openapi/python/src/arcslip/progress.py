@@ -1,0 +1,20 @@
+"""A bar that grows with the increments."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, Iterable, Iterator, Optional
+
+
+def shown(increments: Iterable[Dict[str, Any]], most: Optional[int], progress: bool) -> Iterator[Dict[str, Any]]:
+    """The increments; with `progress` a bar (tqdm) shows their number, the load factor and the last event."""
+    if not progress:
+        yield from increments
+        return
+    from tqdm.auto import tqdm
+
+    with tqdm(total=most, unit=" increments") as bar:
+        for increment in increments:
+            bar.update()
+            load = f"{increment['stage']} {increment['load_factor']:.6g}"
+            bar.set_postfix_str(increment["point"]["event"] or load, refresh=False)
+            yield increment

@@ -1,0 +1,93 @@
+"""Models without the program: what is built, from lists and from arrays."""
+
+import unittest
+
+import arcslip
+from arcslip.errors import value_at
+
+try:
+    import meshio
+    import numpy
+except ImportError:
+    numpy = meshio = None
+
+
+class Building(unittest.TestCase):
+    def test_every_part_of_a_request(self):
+        model = arcslip.Model(2, name="arch", units={"length": "m", "force": "kN"})
+        self.assertEqual(model.nodes([(-5, 0), (0, 0.3), (5, 0)]), ["n0", "n1", "n2"])
+        model.support(0)
+        model.support("n2", "y")
+        self.assertEqual(model.bars([(0, 1), ("n1", "n2")], 2.1e5, strain="green"), [0, 1])
+        self.assertEqual(model.spring(-1, stiffness=7, name="tie"), 2)
+        model.plane("floor", (0, 0), (0, 1))
+        model.ball("drum", center=(0, 2), radius=0.5, side="outside")
+        self.assertEqual(model.contact(2, "floor", 0.3), 0)
+        model.stage("push", {1: (0, -1)}, {"n0": (0, -0.1)}, {"floor": (0, 1)}, {"load_above": 3})
+        self.assertEqual(model.request(max_increments=5, arc_length={"max": 0.1}), {
+            "model": {
+                "dimension": 2, "name": "arch", "units": {"length": "m", "force": "kN"},
+                "nodes": {"n0": [-5.0, 0.0], "n1": [0.0, 0.3], "n2": [5.0, 0.0]},
+                "elements": [
+                    {"kind": "bar", "nodes": ["n0", "n1"], "axial_stiffness": 2.1e5, "strain": "green"},
+                    {"kind": "bar", "nodes": ["n1", "n2"], "axial_stiffness": 2.1e5, "strain": "green"},
+                    {"kind": "spring", "nodes": ["n2"], "stiffness": [[7, 0.0], [0.0, 7]], "name": "tie"},
+                ],
+                "stages": [{
+                    "name": "push", "forces": {"n1": [0, -1]}, "displacements": {"n0": [0, -0.1]},
+                    "obstacle_motion": {"floor": [0, 1]}, "until": {"load_above": 3},
+                }],
+                "supports": {"n0": ["x", "y"], "n2": ["y"]},
+                "obstacles": {
+                    "floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]},
+                    "drum": {"kind": "ball", "center": [0, 2], "radius": 0.5, "side": "outside"},
+                },
+                "contacts": [{"node": "n2", "obstacle": "floor", "friction": 0.3}],
+            },
+            "analysis": {"max_increments": 5, "arc_length": {"max": 0.1}},
+        })
+
+    def test_a_request_is_a_copy(self):
+        model = arcslip.Model(2)
+        model.node("a", 0, 0)
+        model.request()["model"]["nodes"]["a"][0] = 7.0
+        self.assertEqual(model.request()["model"]["nodes"]["a"], [0.0, 0.0])
+
+    def test_what_python_can_tell_at_once(self):
+        model = arcslip.Model(2)
+        model.node("a", 0, 0)
+        with self.assertRaisesRegex(ValueError, "already"):
+            model.node("a", 1, 0)
+        with self.assertRaisesRegex(IndexError, "no node 3"):
+            model.bar("a", 3, 1.0)
+        with self.assertRaisesRegex(ValueError, "2 bars and 3 axial"):
+            model.bars([("a", "b"), ("b", "c")], [1, 2, 3])
+
+    def test_values_by_pointer(self):
+        document = {"a/b": [{"~": 1}]}
+        self.assertEqual(value_at(document, "/a~1b/0/~0"), 1)
+        self.assertIsNone(value_at(document, "/a~1b/1"))
+        self.assertIsNone(value_at(document, "/c"))
+
+    @unittest.skipIf(numpy is None, "numpy and meshio are not installed")
+    def test_arrays_and_meshes(self):
+        points = numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0.0]])
+        lines = numpy.array([[0, 1], [1, 2]])
+        mesh = meshio.Mesh(points, [("line", lines), ("vertex", numpy.array([[0]]))])
+        model = arcslip.Model.from_meshio(mesh, axial_stiffness=numpy.array([1.0, 2.0]))
+        model.support(numpy.int64(0))
+        model.stage("push", {2: numpy.array([0.0, -1.0])})
+        request = model.request(max_increments=numpy.int64(3))
+        self.assertEqual(request["model"]["nodes"], {"n0": [0, 0], "n1": [1, 0], "n2": [0, 1]})
+        self.assertEqual([bar["axial_stiffness"] for bar in request["model"]["elements"]], [1.0, 2.0])
+        self.assertEqual(request["model"]["supports"], {"n0": ["x", "y"]})
+        self.assertEqual(request["analysis"]["max_increments"], 3)
+        model.to_json()
+        in_space = arcslip.Model.from_meshio(meshio.Mesh(points + [0, 0, 1.0], [("line", lines)]), 1.0)
+        self.assertEqual(in_space.dimension, 3)
+        with self.assertRaisesRegex(ValueError, "triangle"):
+            arcslip.Model.from_meshio(meshio.Mesh(points, [("triangle", numpy.array([[0, 1, 2]]))]), 1.0)
+
+
+if __name__ == "__main__":
+    unittest.main()
