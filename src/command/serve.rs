@@ -55,9 +55,9 @@ async fn serve(arguments: &Arguments, access: Access) -> Outcome {
     if arguments.demo {
         demonstration::queue_scenes(server.jobs()).await.map_err(Failure::other)?;
     }
-    // The log has the same message, in case standard output is closed.
-    let _ = say(format_args!("arcslip listens on http://{}\n", server.address()));
+    // The log has the same message, in case standard output is closed; the address is the last that a reader sees.
     tracing::info!(address = %server.address(), database = %service.database, workers, "listening");
+    let _ = say(format_args!("arcslip listens on http://{}\n", server.address()));
     loop {
         tokio::select! {
             () = ends.asked() => break,

@@ -4,9 +4,12 @@ use crate::model::input::error::{InputError, InputErrors};
 use crate::model::input::limits::{MAX_NAME_BYTES, MAX_SWEEP_RUNS};
 use crate::model::request::JobRequest;
 use crate::model::request::sweep::{Combine, SweepParameter, Variation};
-use crate::model::template::{Template, item};
+use crate::model::template::{Template, escaped, item};
 use crate::model::{check, decode};
 use serde_json::Value;
+
+/// The step of a pointer that stands for every item.
+const ANY: &str = "*";
 
 /// A decoded sweep, whose runs are made and checked one by one.
 #[derive(Debug, Clone)]
@@ -40,10 +43,12 @@ impl Sweep {
         let posted = base.as_object_mut().and_then(|members| members.remove("sweep")).unwrap_or_default();
         let mut mistakes = Vec::new();
         let mut parameters = Vec::with_capacity(form.replace.len());
+        let mut places = Vec::new();
         for pointer in form.replace {
             let values = posted.get("replace").and_then(|replace| replace.get(&pointer)).and_then(Value::as_array);
-            if let Err(detail) = can_hold(&base, &pointer) {
-                mistakes.push(InputError::new(place_of(&pointer), detail));
+            match places_of(&base, &pointer) {
+                Ok(found) => places.extend(found.into_iter().map(|place| (parameters.len(), place))),
+                Err(detail) => mistakes.push(InputError::new(place_of(&pointer), detail)),
             }
             parameters.push(SweepParameter { pointer, values: values.cloned().unwrap_or_default() });
         }
@@ -57,8 +62,7 @@ impl Sweep {
         };
         if mistakes.is_empty() {
             let variation = Variation { parameters, combine: form.combine };
-            let pointers: Vec<&str> = variation.parameters.iter().map(|parameter| parameter.pointer.as_str()).collect();
-            let template = Template::new(base, &pointers, &variation.values(0));
+            let template = Template::new(base, &places, &variation.values(0));
             Ok(Self { name, variation, runs, template })
         } else {
             Err(InputErrors(mistakes))
@@ -121,9 +125,10 @@ fn place_of(pointer: &str) -> String {
     format!("/sweep/replace/{}", pointer.replace('~', "~0").replace('/', "~1"))
 }
 
-/// Whether a pointer is equal to another one or below it.
+/// Whether a pointer is equal to another one or below it; a step `*` may be any.
 fn is_within(pointer: &str, other: &str) -> bool {
-    pointer.strip_prefix(other).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+    let mut steps = pointer.split('/');
+    other.split('/').all(|wanted| steps.next().is_some_and(|step| step == wanted || [step, wanted].contains(&ANY)))
 }
 
 fn within_another(parameters: &[SweepParameter]) -> Option<InputError> {
@@ -160,31 +165,68 @@ fn count(combine: Combine, parameters: &[SweepParameter]) -> Result<u64, InputEr
     Ok(runs)
 }
 
-/// Whether a value can be inserted at a place: members of objects may be missing, items of arrays not.
-fn can_hold(document: &Value, pointer: &str) -> Result<(), String> {
+/// The places at which a value is inserted: those of the pointer, with every item of a list or member of an object in place of
+/// a step `*`, unless the object has a member of this name. Members of objects may be missing, items of arrays not.
+fn places_of(document: &Value, pointer: &str) -> Result<Vec<String>, String> {
     if !["/model/", "/analysis/"].iter().any(|root| pointer.starts_with(root)) {
         return Err("a JSON pointer that begins with `/model/` or `/analysis/` is expected".to_owned());
     }
-    let mut at = document;
-    let mut walked = String::new();
-    for step in pointer.split('/').skip(1) {
-        let name = step.replace("~1", "/").replace("~0", "~");
-        at = match at {
-            Value::Object(members) => match members.get(&name) {
-                Some(value) => value,
-                None => return Ok(()),
-            },
-            Value::Array(items) => {
-                let item = item(&name).and_then(|index| items.get(index));
-                item.ok_or_else(|| format!("`{walked}` has {} items, and none `{name}`", items.len()))?
+    let mut places = Vec::new();
+    add_places(document, String::new(), pointer, &mut places)?;
+    Ok(places)
+}
+
+/// Adds the places of the steps that are `left` from a value on, which stands at `walked`.
+fn add_places(at: &Value, walked: String, left: &str, places: &mut Vec<String>) -> Result<(), String> {
+    let Some(steps) = left.strip_prefix('/') else {
+        places.push(walked);
+        return Ok(());
+    };
+    let (step, rest) = steps.find('/').map_or((steps, ""), |end| steps.split_at(end));
+    let name = step.replace("~1", "/").replace("~0", "~");
+    let here = || if walked.is_empty() { "the document" } else { &walked };
+    match at {
+        Value::Object(members) if name == ANY && !members.contains_key(ANY) => {
+            if members.is_empty() {
+                return Err(format!("`{}` has no members", here()));
             }
-            Value::Null => return Ok(()),
-            _ => return Err(format!("`{walked}` is neither an object nor an array")),
-        };
-        walked.push('/');
-        walked.push_str(step);
+            members
+                .iter()
+                .try_for_each(|(name, value)| add_places(value, format!("{walked}/{}", escaped(name)), rest, places))
+        }
+        Value::Object(members) => match members.get(&name) {
+            Some(value) => add_places(value, format!("{walked}/{step}"), rest, places),
+            None if left.split('/').any(|step| step == ANY) => {
+                Err(format!("`{}` has no member `{name}` whose items could be replaced", here()))
+            }
+            None => {
+                places.push(walked + left);
+                Ok(())
+            }
+        },
+        Value::Array(items) if name == ANY => {
+            if items.is_empty() {
+                return Err(format!("`{}` has no items", here()));
+            }
+            (0..)
+                .zip(items)
+                .try_for_each(|(index, value): (usize, _)| add_places(value, format!("{walked}/{index}"), rest, places))
+        }
+        Value::Array(items) => {
+            let found = item(&name).and_then(|index| items.get(index));
+            let found = found.ok_or_else(|| format!("`{}` has {}, and none `{name}`", here(), counted(items.len())))?;
+            add_places(found, format!("{walked}/{step}"), rest, places)
+        }
+        Value::Null => {
+            places.push(walked + left);
+            Ok(())
+        }
+        _ => Err(format!("`{}` is neither an object nor an array", here())),
     }
-    Ok(())
+}
+
+fn counted(items: usize) -> String {
+    if items == 1 { "1 item".to_owned() } else { format!("{items} items") }
 }
 
 #[cfg(test)]
@@ -231,17 +273,53 @@ mod tests {
     }
 
     #[test]
+    fn a_star_stands_for_every_item() {
+        let mut document: Value = serde_json::from_str(scenes::find("two-snapping-bars").unwrap().request).unwrap();
+        let replace = |pointer: &str| json!({"replace": {pointer: [0.25, 0.75]}});
+        for pointer in ["/model/contacts/*/friction", "/*/contacts/*/friction"] {
+            document["sweep"] = replace(pointer);
+            let read = Sweep::read(document.to_string().as_bytes());
+            if pointer.starts_with("/*") {
+                assert!(read.unwrap_err().0[0].detail.contains("begins with `/model/`"));
+                continue;
+            }
+            let sweep = read.unwrap();
+            assert_eq!(sweep.runs(), 2);
+            assert_eq!(sweep.variation.parameters[0].pointer, pointer);
+            let contacts = sweep.run(1).unwrap().request.model.contacts;
+            assert!(contacts.len() > 1 && contacts.iter().all(|contact| contact.friction == 0.75));
+        }
+        // Every member of an object, and a mistake in any of them is told at the value.
+        document["sweep"] = json!({"replace": {"/model/nodes/*/1": [0.5], "/model/contacts/*/friction": [0.1, -1]}});
+        let sweep = Sweep::read(document.to_string().as_bytes()).unwrap();
+        let nodes = sweep.run(0).unwrap().request.model.nodes;
+        assert!(nodes.values().all(|node| node[1] == 0.5));
+        assert_eq!(sweep.run(1).unwrap_err().0[0].pointer, "/sweep/replace/~1model~1contacts~1*~1friction/1");
+        // A member of this name is that member.
+        document["model"]["supports"]["*"] = json!(["x"]);
+        document["sweep"] = json!({"replace": {"/model/supports/*": [["y"]]}});
+        let text = Sweep::read(document.to_string().as_bytes()).unwrap().template.fill(&[json!(["y"])]).0;
+        let text: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(text["model"]["supports"]["*"], json!(["y"]));
+        assert!(text["model"]["supports"].as_object().unwrap().values().any(|held| *held != json!(["y"])));
+    }
+
+    #[test]
     fn mistakes_are_told_at_their_place_in_the_sweep() {
         let refused = |replace, combine| sweep(replace, combine).unwrap_err();
         let one = |found: Vec<(String, String)>| found.into_iter().next().unwrap();
         let (at, detail) = one(refused(json!({"/model/contacts/7/friction": [0.1]}), "grid"));
         assert_eq!(at, "/sweep/replace/~1model~1contacts~17~1friction");
-        assert!(detail.contains("items, and none `7`"), "{detail}");
+        assert!(detail.contains("1 item, and none `7`"), "{detail}");
         assert!(one(refused(json!({"/sweep": [1]}), "grid")).1.contains("`/model/`"));
         assert!(one(refused(json!({"/model/name/x": [1]}), "grid")).1.contains("neither an object"));
         assert!(one(refused(json!({FRICTION: []}), "grid")).1.contains("at least one"));
         assert!(one(refused(json!({FRICTION: [0.1], LONGEST: [1, 2]}), "list")).1.contains("a list"));
         assert!(one(refused(json!({FRICTION: [0.1], "/model/contacts/0": [{}]}), "grid")).1.contains("within"));
+        let every = "/model/contacts/*/friction";
+        assert!(one(refused(json!({FRICTION: [0.1], every: [0.2]}), "grid")).1.contains("within"));
+        assert!(one(refused(json!({"/model/keep/*": [1]}), "grid")).1.contains("no member `keep`"));
+        assert!(one(refused(json!({"/model/dimension/*": [1]}), "grid")).1.contains("neither an object"));
         let many: Vec<f64> = (1..2_000).map(f64::from).collect();
         assert!(one(refused(json!({FRICTION: many, LONGEST: many}), "grid")).1.contains("at most"));
         for name in ["00", "+0", "-", "", "1"] {

@@ -30,25 +30,27 @@ enum Content {
 }
 
 impl Template {
-    /// The template of a document with varied values at JSON pointers, which [`fill`](Self::fill) inserts; `first` are valid
-    /// examples of them.
-    pub fn new(mut document: Value, pointers: &[&str], first: &[Value]) -> Self {
+    /// The template of a document with varied values, which [`fill`](Self::fill) inserts at JSON pointers, each with the number
+    /// of its value; `first` are valid examples of the values.
+    pub fn new(mut document: Value, places: &[(usize, String)], first: &[Value]) -> Self {
         // Missing members follow in the order in which they are inserted.
-        for (pointer, value) in pointers.iter().zip(first) {
-            put(&mut document, pointer, value.clone());
+        for (number, pointer) in places {
+            put(&mut document, pointer, first.get(*number).cloned().unwrap_or_default());
         }
         let mut members = Vec::new();
         let root = if let Value::Object(root) = document { root } else { Map::new() };
         for (name, value) in root {
             match value {
-                Value::Object(model) if name == "model" && !model.is_empty() && !pointers.contains(&"/model") => {
+                Value::Object(model)
+                    if name == "model" && !model.is_empty() && places.iter().all(|(_, place)| place != "/model") =>
+                {
                     for (name, value) in model {
-                        let content = Content::new(value, &format!("/model/{}", escaped(&name)), pointers);
+                        let content = Content::new(value, &format!("/model/{}", escaped(&name)), places);
                         members.push(Member { name, of_model: true, content });
                     }
                 }
                 value => {
-                    let content = Content::new(value, &format!("/{}", escaped(&name)), pointers);
+                    let content = Content::new(value, &format!("/{}", escaped(&name)), places);
                     members.push(Member { name, of_model: false, content });
                 }
             }
@@ -130,13 +132,13 @@ impl Template {
 
 impl Content {
     /// Of the member at that pointer.
-    fn new(value: Value, at: &str, pointers: &[&str]) -> Self {
+    fn new(value: Value, at: &str, places: &[(usize, String)]) -> Self {
         let rest = |pointer: &str| {
             let rest = pointer.strip_prefix(at)?;
             (rest.is_empty() || rest.starts_with('/')).then(|| rest.to_owned())
         };
         let places: Vec<(usize, String)> =
-            pointers.iter().enumerate().filter_map(|(index, pointer)| Some((index, rest(pointer)?))).collect();
+            places.iter().filter_map(|(number, pointer)| Some((*number, rest(pointer)?))).collect();
         if places.is_empty() { Self::Common(value.to_string()) } else { Self::Varied(value, places) }
     }
 
@@ -155,7 +157,7 @@ fn empty(member: &str) -> Option<&'static str> {
 }
 
 /// A name as a step of a JSON pointer.
-fn escaped(name: &str) -> String {
+pub(super) fn escaped(name: &str) -> String {
     name.replace('~', "~0").replace('/', "~1")
 }
 
@@ -229,7 +231,8 @@ mod tests {
         for root in ["model", "analysis"] {
             for (pointers, values) in &sets {
                 for first in values {
-                    let template = Template::new(document.clone(), pointers, first);
+                    let places: Vec<_> = pointers.iter().map(|pointer| (*pointer).to_owned()).enumerate().collect();
+                    let template = Template::new(document.clone(), &places, first);
                     for values in values {
                         let (text, request) = template.fill(values);
                         let whole = plainly(&document, pointers, values);

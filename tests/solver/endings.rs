@@ -255,6 +255,8 @@ fn a_part_under_self_stress_that_turns_freely_is_a_mechanism() {
     for prestress in [0.0, 1.0, -3.0] {
         let (increments, report) = trace(&request(&panel(prestress).to_string()));
         assert_eq!(report.stop_reason, StopReason::Mechanism, "prestress {prestress}");
+        let motion = "it moves `b` along y, `c` along x and y, `d` along x";
+        assert!(report.sentence.ends_with(motion), "prestress {prestress}: {}", report.sentence);
         let last = increments.last().expect("an end");
         assert_eq!(last.point.event.as_deref(), Some("b on floor: reaction zero"), "prestress {prestress}");
         assert!((last.load_factor - 1.0).abs() < 1e-9 && last.displacements["c"].iter().all(|u| u.abs() < 1e-9));

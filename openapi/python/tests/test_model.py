@@ -1,5 +1,6 @@
 """Models without the program: what is built, from lists and from arrays."""
 
+import json
 import unittest
 
 import arcslip
@@ -60,8 +61,62 @@ class Building(unittest.TestCase):
             model.node("a", 1, 0)
         with self.assertRaisesRegex(IndexError, "no node 3"):
             model.bar("a", 3, 1.0)
-        with self.assertRaisesRegex(ValueError, "2 bars and 3 axial"):
+        with self.assertRaisesRegex(ValueError, "2 bars and 3 values of axial_stiffness"):
             model.bars([("a", "b"), ("b", "c")], [1, 2, 3])
+        with self.assertRaisesRegex(ValueError, "pair"):
+            model.bars([("a", "b", "c")], 1.0)
+        for wrong in (True, 0.5, None):
+            with self.assertRaisesRegex(TypeError, "whole number"):
+                model.contact(wrong, "floor")
+        with self.assertRaisesRegex(ValueError, "2 coordinates"):
+            model.node("b", 1, 0, 0)
+        with self.assertRaisesRegex(ValueError, "'z' is no component"):
+            model.support("a", "xz")
+        with self.assertRaisesRegex(ValueError, "2 or 3"):
+            arcslip.Model(4)
+        with self.assertRaisesRegex(TypeError, "dict from nodes"):
+            model.stage("push", [0, -1])
+        with self.assertRaisesRegex(TypeError, "scene"):
+            arcslip.solve("klarbring")
+        with self.assertRaisesRegex(ValueError, 'under "model"'):
+            arcslip.solve(model.request()["model"])
+        with self.assertRaisesRegex(ValueError, "explore"):
+            arcslip.solve(model, explore={"depth": 1, "max_jobs": 1})
+        for wrong in ("127.0.0.1:8080", "htp://x", ""):
+            with self.assertRaisesRegex(ValueError, "address"):
+                arcslip.Client(wrong)
+
+    def test_numbers_that_json_cannot_hold_are_told_with_their_place(self):
+        model = arcslip.Model(2)
+        model.nodes({"a/b": (0, float("nan"))})
+        model.stage("push", {"a/b": [0, float("inf")]})
+        with self.assertRaises(arcslip.InvalidModel) as refused:
+            arcslip.solve(model)
+        pointers = [mistake.pointer for mistake in refused.exception.mistakes]
+        self.assertEqual(pointers, ["/model/nodes/a~1b/1", "/model/stages/0/forces/a~1b/1"])
+
+    def test_one_value_or_one_for_each(self):
+        model = arcslip.Model(2)
+        model.nodes([(0, 0), (1, 0), (2, 0)])
+        model.bars(((place, place + 1) for place in range(2)), (k for k in (1.0, 2.0)), prestress=[3, 4], name=["p", "q"])
+        own = [(bar["axial_stiffness"], bar["prestress"], bar["name"]) for bar in model.request()["model"]["elements"]]
+        self.assertEqual(own, [(1.0, 3, "p"), (2.0, 4, "q")])
+
+    def test_places_name_nodes_wherever_nodes_are_named(self):
+        model = arcslip.Model(2)
+        model.nodes([(0, 0), (1, 0)])
+        model.stage("push", {1: (1, 0)}, until={"displacement": {"node": 1, "component": "x", "above": 1}})
+        request = model.request(record={"nodes": [0], "supports": "all"})
+        self.assertEqual(request["model"]["stages"][0]["until"]["displacement"]["node"], "n1")
+        self.assertEqual(request["analysis"]["record"], {"nodes": ["n0"], "supports": "all"})
+
+    def test_paths_without_increments_say_so(self):
+        path = arcslip.Path(arcslip.Model(2).request(), [])
+        for call in (path.largest_displacement, path.to_meshio if meshio else path.largest_displacement):
+            with self.assertRaises(ValueError):
+                call()
+        with self.assertRaisesRegex(KeyError, "no increments"):
+            path.column("load_factor")
 
     def test_values_by_pointer(self):
         document = {"a/b": [{"~": 1}]}
@@ -83,6 +138,11 @@ class Building(unittest.TestCase):
         self.assertEqual(request["model"]["supports"], {"n0": ["x", "y"]})
         self.assertEqual(request["analysis"]["max_increments"], 3)
         model.to_json()
+        mixed = meshio.Mesh(points, [("line", lines), ("triangle", numpy.array([[0, 1, 2]]))],
+                            cell_data={"EA": [numpy.array([3.0, 4.0]), numpy.array([0.0])]})
+        bars = arcslip.Model.from_meshio(mixed, "EA", ignore_others=True).request()["model"]["elements"]
+        self.assertEqual([bar["axial_stiffness"] for bar in bars], [3.0, 4.0])
+        json.dumps(arcslip.Model(numpy.int64(2)).request())
         in_space = arcslip.Model.from_meshio(meshio.Mesh(points + [0, 0, 1.0], [("line", lines)]), 1.0)
         self.assertEqual(in_space.dimension, 3)
         with self.assertRaisesRegex(ValueError, "triangle"):

@@ -57,8 +57,11 @@ class Program(unittest.TestCase):
         self.assertIn("block on floor: stick to slip", [increment["point"]["event"] for increment in path.events])
         self.assertEqual(path.report["increments"], path[-1]["index"])
         self.assertEqual(path.column("block.x")[-1], path[-1]["displacements"]["block"][0])
-        with self.assertRaisesRegex(KeyError, "block.x"):
-            path.column("block.z")
+        with self.assertRaisesRegex(KeyError, "did you mean 'block.x'"):
+            path.column("blok.x")
+        with self.assertRaisesRegex(KeyError, "record="):
+            path.column("elements/7.axial_force")
+        self.assertEqual(path[1:3].increments, path.increments[1:3])
         self.assertIn("stages_completed", repr(path))
 
     def test_settings_replace_those_of_a_request(self):
@@ -130,6 +133,9 @@ class Program(unittest.TestCase):
             file = os.path.join(folder, "path.ndjson")
             path.save(file)
             self.assertEqual(arcslip.Path.load(file, path.request).increments, path.increments)
+            with open(file, "a") as lines:
+                lines.write('{"index": ')
+            self.assertEqual(len(arcslip.Path.load(file, block())), len(path))
 
     @ALL
     def test_tables_pictures_and_meshes(self):
@@ -148,6 +154,9 @@ class Program(unittest.TestCase):
         axes.figure.savefig(io.BytesIO(), format="svg")
         again = arcslip.solve(block()).plot("block.x")
         self.assertEqual(again.get_xlabel(), "block.x (m)")
+        self.assertEqual(again.get_legend_handles_labels()[1][:2], ["press", "pull"])
+        with self.assertRaisesRegex(ValueError, "no number"):
+            path.plot("event")
         mesh = path.to_meshio()
         last = path[-1]
         for place, node in enumerate(path.request["model"]["nodes"]):
@@ -253,6 +262,22 @@ class Service(unittest.TestCase):
         self.assertEqual(list(table["/model/contacts/0/friction"]), [0, 0.5])
         self.assertTrue(all(math.isfinite(value) for value in table["limit.load_factor"]))
 
+    def test_what_never_answers_is_given_up(self):
+        for url in ("http://no-such-host.invalid:8080", "https" + self.client.url[4:]):
+            with self.assertRaises(arcslip.Unreachable):
+                arcslip.Client(url, patience=60).scene("klarbring")
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            gone = arcslip.Client(f"http://127.0.0.1:{free.getsockname()[1]}", patience=0.1)
+        with self.assertRaises(arcslip.Unreachable):
+            gone.scene("klarbring")
+
+    def test_a_request_that_is_too_large_is_told(self):
+        request = block().request()
+        request["model"]["name"] = "n" * (17 << 20)
+        with self.assertRaises(arcslip.ArcslipError):
+            self.client.submit(request)
+
     def test_cancelled_listed_downloaded_and_deleted(self):
         job = self.client.submit(self.client.scene("one-bar-truss"), max_increments=1_000_000, arc_length={"max": 1e-6, "initial": 1e-6})
         next(iter(job))
@@ -262,6 +287,7 @@ class Service(unittest.TestCase):
         files = zipfile.ZipFile(io.BytesIO(self.client.submit(block()).path() and next(self.client.jobs(status="completed")).download("results.pvd")))
         self.assertIn("path.pvd", files.namelist())
         job.delete()
+        self.assertEqual(job.status, "deleted")
         with self.assertRaises(arcslip.Refused):
             self.client.job(job.id)
 

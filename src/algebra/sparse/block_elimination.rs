@@ -13,6 +13,9 @@
 //! system by the complement `D - C K⁻¹ B` (mixed block elimination: W. Govaerts, J. D. Pryce, IMA J. Numer. Anal. 13
 //! (1993) 161, doi:10.1093/imanum/13.2.161). A change of one border row changes one row of the complement and nothing
 //! else.
+//!
+//! The library's sparse LU of the whole system takes 1.3 times as long with 24 unknowns and 3 borders, 13 times with
+//! 1,012 and 16 borders, as its pivoting fills the factors (`cargo bench --bench elimination`, two cores, 2026-11-25).
 
 use crate::algebra::dense::solve_counters::count_solves;
 use crate::algebra::sparse::border_schur::{BorderSchurComplement, Factor};

@@ -1,4 +1,6 @@
 //! Solves a bordered system by the Schur complement of its borders, with `K` factorised.
+//!
+//! By hand, since the library has no bordered systems; `block_elimination` has the times beside its sparse LU.
 
 use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;

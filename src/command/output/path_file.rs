@@ -140,12 +140,26 @@ fn from_parquet(error: ParquetError) -> io::Error {
     }
 }
 
+/// Removes the files of an earlier path, which viewers would take for a part of this one; others stay.
+fn remove_pieces(folder: &Path) -> io::Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        let number = name.to_str().and_then(|name| name.strip_suffix(".vtu"));
+        if number.is_some_and(|number| number.len() >= 6 && number.bytes().all(|byte| byte.is_ascii_digit())) {
+            std::fs::remove_file(entry.path())?;
+        }
+    }
+    Ok(())
+}
+
 impl PvdFile {
     fn open(place: &Path, request: &JobRequest) -> io::Result<Self> {
         let folder = place.with_extension("");
         // A name without extension is the folder's own.
         let folder = if folder == place { place.with_extension("pieces") } else { folder };
         std::fs::create_dir_all(&folder)?;
+        remove_pieces(&folder)?;
         let folder_name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let mut list = File::create(place)?;
         list.write_all(Collection::HEAD.as_bytes())?;

@@ -62,7 +62,7 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
     let mut point = arrival.point;
     if let Some(reason) = arrival.stop {
         point.kind = PointKind::End;
-        trace.end(reason);
+        trace.end_at(reason, &arrival.options);
     } else if stage_ends {
         tell_end_of_stage(&mut point, &stage.name);
     }

@@ -43,7 +43,7 @@ pub(crate) fn begin_stage(trace: &mut PathTrace<'_>) -> Increment {
         point.unexplored_modes = decision.unexplored;
         point.degenerate = decision.degenerate;
         if let Some(reason) = decision.stop {
-            trace.end(reason);
+            trace.end_at(reason, &decision.options);
         }
         (options, taken) = (decision.options, decision.taken);
     }

@@ -4,6 +4,7 @@ use crate::branching::directions::feasible_direction::{DirectionChoice, Rules};
 use crate::branching::selection::selection_rule::Decision;
 use crate::complementarity::rate_search::branch_and_bound::Effort;
 use crate::continuation::path_state::contact_search::{self, FarContacts, Near};
+use crate::continuation::path_state::event_descriptions::describe_motion;
 use crate::continuation::path_state::resumable_state::{Arriving, Listed, Phase, Progress};
 use crate::continuation::path_state::row_conversion::{self, RowSource};
 use crate::continuation::path_state::visited_states::{ClosedContact, Visited};
@@ -89,6 +90,16 @@ impl<'a> PathTrace<'a> {
         let reason = if broken_off { StopReason::Cancelled } else { reason };
         self.at.phase = Phase::Ended;
         self.at.totals.end(reason, self.elapsed_s());
+    }
+
+    /// Ends the path at a point with these directions; of a mechanism the report says what moves.
+    pub(crate) fn end_at(&mut self, reason: StopReason, options: &[DirectionChoice]) {
+        self.end(reason);
+        let motion = options.iter().find(|option| option.mechanism);
+        if let Some(motion) = motion.filter(|_| self.at.totals.report.stop_reason == StopReason::Mechanism) {
+            let moved = describe_motion(self.scene, &motion.rate.displacement);
+            self.at.totals.report.sentence = format!("{}; it moves {moved}", reason.sentence());
+        }
     }
 
     /// Ends the path within an increment, which is discarded.

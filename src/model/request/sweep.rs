@@ -22,7 +22,7 @@ pub struct SweepRequest {
 #[serde(deny_unknown_fields)]
 pub struct Replacements {
     /// JSON pointers (RFC 6901) into this document, below `/model` or `/analysis`, each with the values to put there, such as
-    /// `{"/model/contacts/0/friction": [0.1, 0.2]}`.
+    /// `{"/model/contacts/0/friction": [0.1, 0.2]}`. A step `*` stands for every item of a list or member of an object.
     pub replace: IndexMap<String, Vec<Value>>,
     #[serde(default)]
     pub combine: Combine,

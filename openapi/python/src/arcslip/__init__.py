@@ -19,12 +19,17 @@
 """
 
 from arcslip.client import Client, Job, Study, Sweep
-from arcslip.errors import ArcslipError, InvalidModel, JobFailed, Mistake, ProgramFailed, ProgramNotFound, Refused
+from arcslip.errors import (
+    ArcslipError, InvalidModel, JobFailed, Mistake, ProgramFailed, ProgramNotFound, Refused, Unreachable,
+)
 from arcslip.model import Model
 from arcslip.path import Path
 from arcslip.program import find_program, scene, solve
 
 __all__ = [
     "ArcslipError", "Client", "InvalidModel", "Job", "JobFailed", "Mistake", "Model", "Path", "ProgramFailed",
-    "ProgramNotFound", "Refused", "Study", "Sweep", "find_program", "scene", "solve",
+    "ProgramNotFound", "Refused", "Study", "Sweep", "Unreachable", "__version__", "find_program", "scene", "solve",
 ]
+
+#: The version of the package.
+__version__ = "0.1.0"

@@ -8,7 +8,10 @@ from __future__ import annotations
 
 import http.client
 import json
+import logging
 import os
+import socket
+import ssl
 import time
 import urllib.error
 import urllib.parse
@@ -16,13 +19,18 @@ import urllib.request
 import uuid
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Union
 
-from arcslip.errors import JobFailed, Refused, invalid
+from arcslip.errors import ArcslipError, JobFailed, Refused, Unreachable, invalid, text_of
 from arcslip.model import Model, as_request, plain
 from arcslip.path import Path
 from arcslip.progress import shown
 
 #: Seconds between tries where the service does not say how long.
 PAUSE = 1.0
+#: Seconds of waiting after which the log says so.
+MUTE = 2.0
+#: How often a connection may break off while a request is sent, before that is what the service does with it.
+MOST_BREAKS = 3
+LOG = logging.getLogger("arcslip")
 #: Seconds until a silent connection counts as lost; the service sends something every 15 s.
 SILENCE = 60.0
 #: Answers after which the same request may succeed: full queue, full disk, service going down or away.
@@ -39,8 +47,13 @@ class Client:
 
     def __init__(self, url: str = "http://127.0.0.1:8080", token: Optional[str] = None, patience: float = 600.0):
         self.url = url.rstrip("/")
+        address = urllib.parse.urlsplit(self.url)
+        if address.scheme not in ("http", "https") or not address.hostname:
+            raise ValueError(f"an address such as http://127.0.0.1:8080 is expected; found {url!r}")
         self.patience = patience
-        token = token or os.environ.get("ARCSLIP_TOKEN")
+        token = (token or os.environ.get("ARCSLIP_TOKEN") or "").strip()
+        if not (token.isascii() and token.isprintable()):
+            raise ValueError("the token has characters that no token has")
         self._headers = {"Authorization": f"Bearer {token}"} if token else {}
 
     # Jobs -------------------------------------------------------------------------------------------------------------
@@ -70,7 +83,8 @@ class Client:
         return Job(self, self.get(f"/v1/jobs/{identity}"))
 
     def jobs(self, **filters: Any) -> Iterator["Job"]:
-        """Jobs, newest first; filtered by `status`, `parent` or `sweep`."""
+        """Jobs, newest first; filtered by `status`, `parent` or `sweep`, the last two as `id` or as they are."""
+        filters = {name: value.id if isinstance(value, Resource) else value for name, value in filters.items()}
         return (Job(self, found) for found in self._pages("/v1/jobs", "jobs", filters))
 
     def scene(self, name: str) -> Dict[str, Any]:
@@ -89,8 +103,12 @@ class Client:
         **analysis: Any,
     ) -> "Sweep":
         """Queues a path for each combination of values at JSON pointers, such as
-        `{"/model/contacts/0/friction": [0.1, 0.3]}`."""
+        `{"/model/contacts/0/friction": [0.1, 0.3]}`; a step `*` stands for every item. `combine` is `"grid"`, each value
+        with each, or `"list"`, the first of each, the second of each and so on."""
         request = as_request(model, analysis)
+        for pointer, own in replace.items():
+            if isinstance(own, (str, bytes, Mapping)) or not hasattr(own, "__iter__"):
+                raise TypeError(f"{pointer}: a list or an array of values is expected, found {own!r}")
         values = {pointer: plain(list(own) if not hasattr(own, "tolist") else own) for pointer, own in replace.items()}
         request["sweep"] = {"replace": values, "combine": combine}
         return Sweep(self, self.post("/v1/sweeps", request, key))
@@ -114,7 +132,7 @@ class Client:
         """The JSON that a posted request answers; mistakes in it raise `InvalidModel`."""
         headers = {"Content-Type": "application/json", "Idempotency-Key": key or str(uuid.uuid4())}
         try:
-            return json.loads(self.read("POST", path, json.dumps(request).encode(), headers))
+            return json.loads(self.read("POST", path, text_of(request).encode(), headers))
         except Refused as refused:
             if refused.status == 422 and refused.problem.get("errors"):
                 raise invalid(request, refused.problem["errors"]) from None
@@ -127,28 +145,44 @@ class Client:
             try:
                 with self.open(method, path, body, headers) as answer:
                     return answer.read()
-            except (OSError, http.client.HTTPException):
+            except Unreachable:
+                raise
+            except (OSError, http.client.HTTPException) as error:
                 if time.monotonic() > given_up:
-                    raise
+                    raise Unreachable(f"the answer of {self.url}{path} breaks off: {error}") from error
                 time.sleep(PAUSE)
 
     def open(self, method: str, path: str, body: Optional[bytes] = None, headers: Mapping[str, str] = {}) -> Any:
-        """The answer to a call, once the service takes it. Raises `Refused` where it never will, and what stood in the
-        way where that lasts longer than `patience`."""
-        given_up = time.monotonic() + self.patience
+        """The answer to a call, once the service takes it. Raises `Refused` where it never will, and `Unreachable` where
+        no service answers, or not for as long as `patience` says."""
+        begun = time.monotonic()
+        said, breaks = False, 0
         asked = urllib.request.Request(self.url + path, body, {**self._headers, **headers}, method=method)
         while True:
             try:
                 return urllib.request.urlopen(asked, timeout=SILENCE)
             except urllib.error.HTTPError as answer:
-                if answer.code not in PASSING or time.monotonic() > given_up:
-                    raise Refused(answer.code, problem_of(answer.read())) from None
-                time.sleep(pause_of(answer.headers.get("Retry-After")))
-            except (OSError, http.client.HTTPException):
-                # Nobody answers: it may be starting.
-                if time.monotonic() > given_up:
-                    raise
-                time.sleep(PAUSE)
+                why = problem_of(answer.read())
+                if answer.code not in PASSING or time.monotonic() > begun + self.patience:
+                    raise Refused(answer.code, why) from None
+                reason, pause = str(why.get("detail") or answer.code), pause_of(answer.headers.get("Retry-After"))
+            except (OSError, http.client.HTTPException) as error:
+                cause = getattr(error, "reason", error)
+                breaks += isinstance(cause, (BrokenPipeError, ConnectionResetError)) and body is not None
+                if breaks >= MOST_BREAKS:
+                    size = f"{len(body or b'') / 2**20:.1f} MiB"
+                    raise Unreachable(f"{self.url} breaks off while a request of {size} is sent: too large?") from error
+                # No service is there by this name, or with this certificate, however long one waits.
+                if isinstance(cause, (socket.gaierror, ssl.SSLError, http.client.InvalidURL)):
+                    raise Unreachable(f"{self.url}: {cause}") from error
+                if time.monotonic() > begun + self.patience:
+                    raise Unreachable(f"{self.url} does not answer: {cause}") from error
+                # It may be starting.
+                reason, pause = str(cause), PAUSE
+            if not said and time.monotonic() > begun + MUTE:
+                said = True
+                LOG.warning("waiting for %s: %s", self.url, reason)
+            time.sleep(pause)
 
     def _pages(self, path: str, member: str, filters: Mapping[str, Any]) -> Iterator[Dict[str, Any]]:
         asked = {name: value for name, value in filters.items() if value is not None}
@@ -222,6 +256,7 @@ class Resource:
     def delete(self) -> None:
         """Stops it and deletes what is stored."""
         self.client.read("DELETE", self.address)
+        self.record = {**self.record, "status": "deleted"}
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.id}: {self.record['status']}>"
@@ -259,6 +294,8 @@ class Job(Resource):
                         increment = json.loads(line)
                         last = increment["index"]
                         yield increment
+            except ArcslipError:
+                raise
             except (OSError, ValueError, http.client.HTTPException):
                 # It broke off, perhaps within a line.
                 continue
@@ -292,7 +329,9 @@ class Job(Resource):
         return list(self.client.jobs(parent=self.id))
 
     def download(self, name: str) -> bytes:
-        """The stored increments as a file: `path.csv`, `results.pvd` or `results.parquet` (zip files)."""
+        """The bytes of a file with all increments, once the job has ended: `path.csv`, or `results.pvd` or
+        `results.parquet`, which are zip files."""
+        self.wait()
         return self.client.read("GET", f"{self.address}/{name}")
 
 
@@ -313,7 +352,8 @@ class Sweep(Resource):
             after = f"?after={page['next_after']}"
 
     def to_frame(self) -> Any:
-        """The runs as a table of pandas, with a column for each parameter."""
+        """The runs as a table of pandas, with a column for each parameter, and the first limit point of each path in
+        `limit.load_factor` and the other columns `limit.`; numbers are not-a-number where there is none."""
         import pandas
 
         pointers = [parameter["pointer"] for parameter in self.refresh()["parameters"]]
@@ -324,7 +364,9 @@ class Sweep(Resource):
             values = dict(zip(pointers, row["values"]))
             own = {name: row.get(name) for name in ("run", "job", "status", "stop_reason", "last_index")}
             table.append({**own, **values, **{f"limit.{name}": limit.get(name) for name in limits}})
-        return pandas.DataFrame(table)
+        frame = pandas.DataFrame(table)
+        numbers = ["limit.load_factor", "limit.arc_length", "limit.increment"]
+        return frame.astype({name: float for name in numbers if name in frame})
 
     def jobs(self) -> List[Job]:
         """The runs as jobs."""

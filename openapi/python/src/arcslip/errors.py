@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, NamedTuple, Optional, Sequence
+import json
+import math
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 
 #: Mistakes that a message shows; the exception has all of them.
 SHOWN = 20
@@ -49,6 +51,10 @@ class Refused(ArcslipError):
         super().__init__(f"{status}: {problem.get('detail') or problem.get('title') or 'no reason is given'}")
 
 
+class Unreachable(ArcslipError, OSError):
+    """No service answers at the address, or not for as long as `patience` says."""
+
+
 class JobFailed(ArcslipError):
     """A job, study or sweep failed; the increments so far can still be read from the job."""
 
@@ -79,3 +85,27 @@ def invalid(request: Any, errors: Sequence[Dict[str, Any]]) -> InvalidModel:
     listed = [(error.get("pointer", ""), error.get("detail", "")) for error in errors]
     # The whole request as a value would tell nothing.
     return InvalidModel([Mistake(at, detail, value_at(request, at) if at else None) for at, detail in listed])
+
+
+def not_finite(document: Any, pointer: str = "") -> List[Mistake]:
+    """The numbers of a document that JSON cannot hold: infinite ones, and what is no number."""
+    if isinstance(document, float) and not math.isfinite(document):
+        return [Mistake(pointer, "a finite number is expected", document)]
+    if isinstance(document, dict):
+        members = [(str(name).replace("~", "~0").replace("/", "~1"), value) for name, value in document.items()]
+    elif isinstance(document, list):
+        members = [(str(place), value) for place, value in enumerate(document)]
+    else:
+        return []
+    return [mistake for step, value in members for mistake in not_finite(value, f"{pointer}/{step}")]
+
+
+def text_of(request: Any) -> str:
+    """The request as JSON; raises `InvalidModel` for numbers that JSON cannot hold."""
+    try:
+        return json.dumps(request, allow_nan=False)
+    except ValueError:
+        mistakes = not_finite(request)
+        if not mistakes:
+            raise
+        raise InvalidModel(mistakes) from None

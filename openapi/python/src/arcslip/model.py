@@ -32,10 +32,13 @@ class Model:
     """
 
     def __init__(self, dimension: int, name: Optional[str] = None, units: Optional[Mapping[str, str]] = None):
-        self.dimension = dimension
+        if dimension not in (2, 3):
+            raise ValueError(f"the dimension is 2 or 3, not {dimension!r}")
+        self.dimension = int(dimension)
         self.name = name
         self.units = None if units is None else dict(units)
         self._nodes: Dict[str, List[float]] = {}
+        self._names: List[str] = []
         self._supports: Dict[str, List[str]] = {}
         self._elements: List[Dict[str, Any]] = []
         self._obstacles: Dict[str, Dict[str, Any]] = {}
@@ -44,13 +47,15 @@ class Model:
 
     # Nodes ------------------------------------------------------------------------------------------------------------
 
-    def node(self, name: str, *coordinates: float) -> str:
-        """Adds a node; returns its name."""
+    def node(self, name: str, *coordinates: Union[float, Vector]) -> str:
+        """Adds a node from its coordinates, or one list or array of them; returns its name."""
         if name in self._nodes:
             raise ValueError(f"there is a node {name!r} already")
-        # One array of coordinates will do as well.
         values = plain(coordinates[0]) if len(coordinates) == 1 and not is_number(coordinates[0]) else plain(coordinates)
+        if not isinstance(values, list) or len(values) != self.dimension:
+            raise ValueError(f"node {name!r}: {self.dimension} coordinates are expected, found {values!r}")
         self._nodes[name] = [float(value) for value in values]
+        self._names.append(name)
         return name
 
     def nodes(self, coordinates: Union[Mapping[str, Vector], Iterable[Vector]], prefix: str = "n") -> List[str]:
@@ -59,13 +64,16 @@ class Model:
         Rows are named by their place among all nodes: `n0`, `n1` and so on.
         """
         if isinstance(coordinates, Mapping):
-            return [self.node(str(name), *plain(row)) for name, row in coordinates.items()]
+            return [self.node(str(name), row) for name, row in coordinates.items()]
         first = len(self._nodes)
-        return [self.node(f"{prefix}{first + place}", *plain(row)) for place, row in enumerate(coordinates)]
+        return [self.node(f"{prefix}{first + place}", row) for place, row in enumerate(coordinates)]
 
     def support(self, nodes: Union[Node, Iterable[Node]], components: Union[str, Iterable[str]] = "") -> None:
         """Holds components such as `"xy"` of a node or of several; all of them unless given."""
         held = list(components) or list("xyz"[: self.dimension])
+        unknown = [component for component in held if component not in "xyz"[: self.dimension]]
+        if unknown:
+            raise ValueError(f"{unknown[0]!r} is no component; known are {', '.join('xyz'[: self.dimension])}")
         several = [nodes] if isinstance(nodes, str) or not isinstance(nodes, Iterable) else nodes
         for node in several:
             own = self._supports.setdefault(self.node_name(node), [])
@@ -75,10 +83,12 @@ class Model:
         """The name of a node that is given by its name or its place."""
         if isinstance(node, str):
             return node
-        names = list(self._nodes)
-        if not -len(names) <= int(node) < len(names):
-            raise IndexError(f"there is no node {node}; the model has {len(names)}")
-        return names[int(node)]
+        # Booleans are whole numbers to Python, and a mask of nodes is not a list of places.
+        if not isinstance(node, numbers.Integral) or isinstance(node, bool):
+            raise TypeError(f"a node is named by its name or its place, a whole number; found {node!r}")
+        if not -len(self._names) <= int(node) < len(self._names):
+            raise IndexError(f"there is no node {node}; the model has {len(self._names)}")
+        return self._names[int(node)]
 
     # Elements ---------------------------------------------------------------------------------------------------------
 
@@ -91,14 +101,16 @@ class Model:
         return self._element({"kind": "bar", "nodes": nodes, "axial_stiffness": plain(axial_stiffness), **plain(more)})
 
     def bars(self, pairs: Iterable[Sequence[Node]], axial_stiffness: Union[float, Vector], **more: Any) -> List[int]:
-        """Adds bars from pairs of nodes, by name or by place; `axial_stiffness` is one number, or one for each."""
-        pairs = [list(pair) for pair in plain_pairs(pairs)]
-        stiffnesses = plain(axial_stiffness)
-        if not isinstance(stiffnesses, list):
-            stiffnesses = [stiffnesses] * len(pairs)
-        if len(stiffnesses) != len(pairs):
-            raise ValueError(f"there are {len(pairs)} bars and {len(stiffnesses)} axial stiffnesses")
-        return [self.bar(first, second, own, **more) for (first, second), own in zip(pairs, stiffnesses)]
+        """Adds bars from pairs of nodes, by name or by place. `axial_stiffness`, and each of the other members, is one
+        value for all of them, or a list or an array with one for each."""
+        joined = [plain(list(pair)) if not hasattr(pair, "tolist") else pair.tolist() for pair in pairs]
+        for pair in joined:
+            if not isinstance(pair, list) or len(pair) != 2:
+                raise ValueError(f"a bar joins a pair of nodes; found {pair!r}")
+        members = {"axial_stiffness": axial_stiffness, **more}
+        columns = {name: one_for_each(name, value, len(joined)) for name, value in members.items()}
+        own = [{name: column[place] for name, column in columns.items()} for place in range(len(joined))]
+        return [self.bar(first, second, **members) for (first, second), members in zip(joined, own)]
 
     def spring(self, first: Node, second: Optional[Node] = None, *, stiffness: Any, **more: Any) -> int:
         """Adds a spring between two nodes, or between one and the ground; returns its place among the elements.
@@ -152,11 +164,13 @@ class Model:
         stage: Dict[str, Any] = {"name": name}
         for key, pattern in (("forces", forces), ("displacements", displacements)):
             if pattern is not None:
+                if not isinstance(pattern, Mapping):
+                    raise TypeError(f"{key} are a dict from nodes to vectors; found {pattern!r}")
                 stage[key] = {self.node_name(node): plain(vector) for node, vector in pattern.items()}
         if obstacle_motion is not None:
             stage["obstacle_motion"] = plain(obstacle_motion)
         if until is not None:
-            stage["until"] = plain(until)
+            stage["until"] = self._with_names(plain(until), ("displacement", "node"))
         self._stages.append(stage)
         return name
 
@@ -175,7 +189,22 @@ class Model:
         request: Dict[str, Any] = {"model": copy.deepcopy(model)}
         if analysis:
             request["analysis"] = plain(analysis)
+            for member in ("nodes", "supports"):
+                self._with_names(request["analysis"], ("record", member))
         return request
+
+    def _with_names(self, value: Any, steps: Sequence[str]) -> Any:
+        """The value, in which the nodes at the end of the steps are named where they are given by their places."""
+        inner = value
+        for step in steps[:-1]:
+            inner = inner.get(step) if isinstance(inner, dict) else None
+        if isinstance(inner, dict) and steps[-1] in inner:
+            nodes = inner[steps[-1]]
+            if isinstance(nodes, list):
+                inner[steps[-1]] = [self.node_name(node) for node in nodes]
+            elif not isinstance(nodes, str):
+                inner[steps[-1]] = self.node_name(nodes)
+        return value
 
     def to_json(self, **analysis: Any) -> str:
         """The request as text."""
@@ -183,11 +212,18 @@ class Model:
 
     @classmethod
     def from_meshio(
-        cls, mesh: Any, axial_stiffness: Union[float, Vector], dimension: Optional[int] = None, prefix: str = "n"
+        cls,
+        mesh: Any,
+        axial_stiffness: Union[float, Vector, str],
+        dimension: Optional[int] = None,
+        prefix: str = "n",
+        ignore_others: bool = False,
     ) -> "Model":
         """A truss of the lines of a mesh of meshio: a node for each point, and a bar for each cell `line`.
 
-        Without `dimension` points that all lie in the plane z = 0 give a model in the plane.
+        `axial_stiffness` is one number, one for each line, or the name of the mesh's cell data. Without `dimension`
+        points that all lie in the plane z = 0 give a model in the plane. Cells of other kinds are refused, unless they
+        are to be ignored.
         """
         points = [list(map(float, row)) for row in plain(mesh.points)]
         if dimension is None:
@@ -195,11 +231,16 @@ class Model:
         model = cls(dimension)
         model.nodes(((row + [0.0] * 3)[:dimension] for row in points), prefix)
         others = sorted({block.type for block in mesh.cells} - {"line", "vertex"})
-        if others:
-            raise ValueError(f"the mesh has cells {', '.join(others)}; lines alone can be bars")
+        if others and not ignore_others:
+            raise ValueError(f"the mesh has cells {', '.join(others)}; lines alone can be bars; `ignore_others` leaves the others out")
         pairs = [pair for block in mesh.cells if block.type == "line" for pair in plain(block.data)]
         if not pairs:
             raise ValueError("the mesh has no cells `line`")
+        if isinstance(axial_stiffness, str):
+            if axial_stiffness not in mesh.cell_data:
+                raise ValueError(f"the mesh has no cell data {axial_stiffness!r}; it has {sorted(mesh.cell_data)}")
+            blocks = zip(mesh.cells, mesh.cell_data[axial_stiffness])
+            axial_stiffness = [value for block, values in blocks if block.type == "line" for value in plain(values)]
         model.bars(pairs, axial_stiffness)
         return model
 
@@ -212,15 +253,31 @@ def is_number(value: Any) -> bool:
     return isinstance(value, numbers.Number)
 
 
-def plain_pairs(pairs: Iterable[Sequence[Node]]) -> List[List[Node]]:
-    return [plain(list(pair)) if not hasattr(pair, "tolist") else pair.tolist() for pair in pairs]
+def one_for_each(name: str, value: Any, count: int) -> List[Any]:
+    """A list or an array with a value for each of so many, or one value for all of them."""
+    if isinstance(value, str) or is_number(value):
+        return [value] * count
+    values = plain(value) if hasattr(value, "tolist") else list(value)
+    if not isinstance(values, list):
+        # An array without dimensions.
+        return [values] * count
+    if len(values) != count:
+        raise ValueError(f"there are {count} bars and {len(values)} values of {name}")
+    return values
 
 
 def as_request(model: Union[Model, Mapping[str, Any]], analysis: Mapping[str, Any]) -> Dict[str, Any]:
     """The request of a model, or of a request in which settings are replaced."""
     if isinstance(model, Model):
         return model.request(**analysis)
+    if not isinstance(model, Mapping):
+        raise TypeError(
+            f"a Model or a request, a dict, is expected; found {type(model).__name__}. `arcslip.scene(name)` gives the "
+            "request of a built-in scene, `json.load(file)` that of a file"
+        )
     request = dict(plain(model))
+    if "model" not in request and "nodes" in request:
+        raise ValueError('the members of a model belong under "model": {"model": {...}, "analysis": {...}}')
     if analysis:
         request["analysis"] = {**request.get("analysis", {}), **plain(analysis)}
     return request

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import difflib
 import json
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union, overload
+
+from arcslip.model import Model, as_request
 
 Increment = Dict[str, Any]
 
@@ -36,9 +39,12 @@ class Path:
     def __getitem__(self, place: int) -> Increment: ...
 
     @overload
-    def __getitem__(self, place: slice) -> List[Increment]: ...
+    def __getitem__(self, place: slice) -> "Path": ...
 
     def __getitem__(self, place: Union[int, slice]) -> Any:
+        """An increment, or a part of the path."""
+        if isinstance(place, slice):
+            return Path(self.request, self.increments[place], self.report, self.stop_reason)
         return self.increments[place]
 
     @property
@@ -100,10 +106,20 @@ class Path:
         not have it."""
         rows = [self.row(increment) for increment in self.increments]
         if not any(name in row for row in rows):
-            known = sorted({known for row in rows for known in row})
-            near = [known for known in known if name.split(".")[0] in known][:10] or known[:10]
-            raise KeyError(f"no increment has {name!r}; known are {', '.join(near)} ...")
+            raise KeyError(self.unknown(name, rows))
         return [row.get(name) for row in rows]
+
+    def unknown(self, name: str, rows: Sequence[Mapping[str, Any]]) -> str:
+        if not rows:
+            return "the path has no increments"
+        known = list(dict.fromkeys(known for row in rows for known in row))
+        text = f"no increment has {name!r}"
+        near = difflib.get_close_matches(str(name), known, 3)
+        text += f"; did you mean {' or '.join(map(repr, near))}?" if near else f"; known are {', '.join(known[:12])}, ..."
+        for what, member in (("elements/", "elements"), (".reaction.", "supports")):
+            if what in str(name):
+                text += f' In large models {member} are recorded where they are asked for: record={{"{member}": "all"}}.'
+        return text
 
     @property
     def dimension(self) -> int:
@@ -123,10 +139,13 @@ class Path:
             lines.writelines(json.dumps(increment, separators=(",", ":")) + "\n" for increment in self.increments)
 
     @classmethod
-    def load(cls, file: Any, request: Mapping[str, Any]) -> "Path":
-        """Reads what `save` or the program wrote, with the request of the path."""
+    def load(cls, file: Any, request: Union[Model, Mapping[str, Any]]) -> "Path":
+        """Reads what `save` or the program wrote, with the request or the model of the path. A last line that was cut
+        off, by an interrupt, is left out. The lines do not say why the path ended: `stop_reason` is `None`."""
         with open(file, encoding="utf-8") as lines:
-            return cls(request, [json.loads(line) for line in lines])
+            text = lines.read()
+        whole = text[: text.rfind("\n") + 1]
+        return cls(as_request(request, {}), [json.loads(line) for line in whole.splitlines()])
 
     # Pictures ---------------------------------------------------------------------------------------------------------
 
@@ -166,6 +185,8 @@ class Path:
         their displacements as point data, axial forces of bars as cell data."""
         import meshio
 
+        if not self.increments:
+            raise ValueError("the path has no increments")
         increment, model = self.increments[place], self.request["model"]
         nodes = list(model["nodes"])
 
@@ -203,5 +224,5 @@ class Path:
         if not self.increments:
             return "<Path without increments>"
         last = self.increments[-1]
-        end = self.stop_reason or "under way"
+        end = self.stop_reason or "why it ended is not known"
         return f"<Path of {len(self)} increments to {last['load_factor']:.6g} in stage {last['stage']!r}: {end}>"

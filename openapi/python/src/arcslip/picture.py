@@ -23,11 +23,21 @@ def draw(path: Any, x: Optional[str], y: str, ax: Any, style: Dict[str, Any]) ->
     if ax is None:
         _, ax = pyplot.subplots()
     across, up = path.column(x), path.column(y)
-    color = style.pop("color", None) or ax._get_lines.get_next_color()
-    label = style.pop("label", None)
+    for name, values in ((x, across), (y, up)):
+        if not all(value is None or isinstance(value, (int, float)) for value in values):
+            raise ValueError(f"{name!r} is no number and cannot be drawn")
+    color, label = style.pop("color", None), style.pop("label", None)
+    stages = list(dict.fromkeys(increment["stage"] for increment in path.increments))
+    # Each stage has a pattern of its own, which its load factor multiplies.
+    named_by_stage = label is None and len(stages) > 1
+    colors = {stage: color or next_color(ax) for stage in (stages if named_by_stage else stages[:1])}
+    color = list(colors.values())[-1] if colors else color
+    said = set()
     for is_dashed, first, last in stretches(path.increments):
-        ax.plot(across[first:last], up[first:last], LINES[is_dashed], color=color, label=label, **style)
-        label = None
+        stage = path.increments[last - 1]["stage"]
+        own = (stage if named_by_stage else label) if stage not in said else None
+        said.update([stage] if named_by_stage else stages)
+        ax.plot(across[first:last], up[first:last], LINES[is_dashed], color=colors.get(stage, color), label=own, **style)
     seen: Dict[str, Tuple[List[Any], List[Any]]] = {}
     for place, increment in enumerate(path.increments):
         kind = increment["point"]["kind"]
@@ -50,6 +60,14 @@ def draw(path: Any, x: Optional[str], y: str, ax: Any, style: Dict[str, Any]) ->
     if name and not ax.get_title():
         ax.set_title(name)
     return ax
+
+
+def next_color(ax: Any) -> Any:
+    """The color that the next line of the axes would have."""
+    (line,) = ax.plot([], [])
+    color = line.get_color()
+    line.remove()
+    return color
 
 
 def stretches(increments: List[Dict[str, Any]]) -> List[Tuple[bool, int, int]]:

@@ -9,7 +9,7 @@ import subprocess
 import threading
 from typing import Any, Callable, Dict, List, Mapping, Optional, Union
 
-from arcslip.errors import ArcslipError, ProgramFailed, ProgramNotFound, invalid
+from arcslip.errors import ArcslipError, ProgramFailed, ProgramNotFound, invalid, text_of
 from arcslip.model import Model, as_request
 from arcslip.path import Path
 from arcslip.progress import shown
@@ -43,6 +43,9 @@ def solve(
     `InvalidModel`.
     """
     request = as_request(model, analysis)
+    if "explore" in request.get("analysis", {}):
+        raise ValueError("a service alone explores other directions: use `Client.explore`")
+    text = text_of(request)
     command = [find_program(program), "solve", "-", "--mistakes", "json"]
     solver = subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, encoding="utf-8"
@@ -57,7 +60,7 @@ def solve(
     try:
         try:
             with asks:
-                asks.write(json.dumps(request))
+                asks.write(text)
         except BrokenPipeError:
             # It has ended already, and says why.
             pass

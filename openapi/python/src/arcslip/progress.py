@@ -18,3 +18,6 @@ def shown(increments: Iterable[Dict[str, Any]], most: Optional[int], progress: b
             load = f"{increment['stage']} {increment['load_factor']:.6g}"
             bar.set_postfix_str(increment["point"]["event"] or load, refresh=False)
             yield increment
+        # A path ends where it ends; the bound of its increments is no aim.
+        bar.total = bar.n
+        bar.refresh()

@@ -5,6 +5,9 @@
 //! cancellation is raised by 1 as in the symmetric factorisation. Iterative refinement recovers the digits lost without
 //! row exchanges; the residual shows where it does not (X. S. Li, J. W. Demmel, ACM Trans. Math. Softw. 29 (2003) 110,
 //! doi:10.1145/779359.779361: static pivoting).
+//!
+//! By hand, since the library's LU exchanges rows and analyses the pattern as one without symmetry: the table of
+//! `cargo bench --bench elimination` has both.
 
 use crate::algebra::sparse::factors::ldl::scales;
 use crate::algebra::sparse::factors::pattern::Pattern;

@@ -11,6 +11,10 @@
 //! friction, `F = 0` and back substitution gives `r`. With friction (`F != 0`) there are two options: `r` remains a
 //! border, with the equations `H` as its rows, and the matrix remains symmetric; or `F R⁻¹` times the equations `H` is
 //! subtracted from the equations `T`, which makes the matrix unsymmetric, and back substitution gives `r` as well.
+//!
+//! By hand, since the library has no such elimination. Contacts that stay in the borders take 1.2 to 1.5 times as long
+//! up to 1,012 unknowns; with 10,010 and 49 contacts, where the unsymmetric factorisation outweighs the borders, 0.8
+//! times (`cargo bench --bench elimination`, two cores, 2026-11-25).
 
 pub(crate) mod constrained_node_construction;
 pub(crate) mod constrained_node_set;
