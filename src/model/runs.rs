@@ -1,7 +1,7 @@
 //! The runs of a sweep, made one by one from its text; mistakes in a run are reported at their place in the sweep.
 
 use crate::model::input::error::{InputError, InputErrors};
-use crate::model::input::limits::{MAX_NAME_BYTES, MAX_SWEEP_RUNS};
+use crate::model::input::limits::{MAX_NAME_BYTES, MAX_SWEEP_PLACES, MAX_SWEEP_RUNS};
 use crate::model::request::JobRequest;
 use crate::model::request::sweep::{Combine, SweepParameter, Variation};
 use crate::model::template::{Template, escaped, item};
@@ -46,7 +46,7 @@ impl Sweep {
         let mut places = Vec::new();
         for pointer in form.replace {
             let values = posted.get("replace").and_then(|replace| replace.get(&pointer)).and_then(Value::as_array);
-            match places_of(&base, &pointer) {
+            match places_of(&base, &pointer, MAX_SWEEP_PLACES - places.len()) {
                 Ok(found) => places.extend(found.into_iter().map(|place| (parameters.len(), place))),
                 Err(detail) => mistakes.push(InputError::new(place_of(&pointer), detail)),
             }
@@ -167,17 +167,22 @@ fn count(combine: Combine, parameters: &[SweepParameter]) -> Result<u64, InputEr
 
 /// The places at which a value is inserted: those of the pointer, with every item of a list or member of an object in place of
 /// a step `*`, unless the object has a member of this name. Members of objects may be missing, items of arrays not.
-fn places_of(document: &Value, pointer: &str) -> Result<Vec<String>, String> {
+///
+/// There are at most `most`.
+fn places_of(document: &Value, pointer: &str, most: usize) -> Result<Vec<String>, String> {
     if !["/model/", "/analysis/"].iter().any(|root| pointer.starts_with(root)) {
         return Err("a JSON pointer that begins with `/model/` or `/analysis/` is expected".to_owned());
     }
     let mut places = Vec::new();
-    add_places(document, String::new(), pointer, &mut places)?;
+    add_places(document, String::new(), pointer, most, &mut places)?;
     Ok(places)
 }
 
 /// Adds the places of the steps that are `left` from a value on, which stands at `walked`.
-fn add_places(at: &Value, walked: String, left: &str, places: &mut Vec<String>) -> Result<(), String> {
+fn add_places(at: &Value, walked: String, left: &str, most: usize, places: &mut Vec<String>) -> Result<(), String> {
+    if places.len() >= most {
+        return Err(format!("a sweep puts values into {MAX_SWEEP_PLACES} places at most, and these are more"));
+    }
     let Some(steps) = left.strip_prefix('/') else {
         places.push(walked);
         return Ok(());
@@ -190,12 +195,12 @@ fn add_places(at: &Value, walked: String, left: &str, places: &mut Vec<String>) 
             if members.is_empty() {
                 return Err(format!("`{}` has no members", here()));
             }
-            members
-                .iter()
-                .try_for_each(|(name, value)| add_places(value, format!("{walked}/{}", escaped(name)), rest, places))
+            members.iter().try_for_each(|(name, value)| {
+                add_places(value, format!("{walked}/{}", escaped(name)), rest, most, places)
+            })
         }
         Value::Object(members) => match members.get(&name) {
-            Some(value) => add_places(value, format!("{walked}/{step}"), rest, places),
+            Some(value) => add_places(value, format!("{walked}/{step}"), rest, most, places),
             None if left.split('/').any(|step| step == ANY) => {
                 Err(format!("`{}` has no member `{name}` whose items could be replaced", here()))
             }
@@ -208,14 +213,14 @@ fn add_places(at: &Value, walked: String, left: &str, places: &mut Vec<String>) 
             if items.is_empty() {
                 return Err(format!("`{}` has no items", here()));
             }
-            (0..)
-                .zip(items)
-                .try_for_each(|(index, value): (usize, _)| add_places(value, format!("{walked}/{index}"), rest, places))
+            (0..).zip(items).try_for_each(|(index, value): (usize, _)| {
+                add_places(value, format!("{walked}/{index}"), rest, most, places)
+            })
         }
         Value::Array(items) => {
             let found = item(&name).and_then(|index| items.get(index));
             let found = found.ok_or_else(|| format!("`{}` has {}, and none `{name}`", here(), counted(items.len())))?;
-            add_places(found, format!("{walked}/{step}"), rest, places)
+            add_places(found, format!("{walked}/{step}"), rest, most, places)
         }
         Value::Null => {
             places.push(walked + left);
@@ -335,6 +340,12 @@ mod tests {
         let wrong = sweep.run(1).unwrap_err().0;
         assert_eq!(wrong[0].pointer, "/sweep/replace/~1model~1contacts~10~1friction/1");
         assert!(wrong[0].detail.starts_with("model.contacts[0].friction: "), "{}", wrong[0].detail);
+        let many: serde_json::Map<String, Value> =
+            (0..1_000).map(|one| (format!("/model/contacts/*/member{one}"), json!([1]))).collect();
+        let contacts = vec![json!({}); 1_000];
+        let flood = json!({"model": {"contacts": contacts}, "sweep": {"replace": many}});
+        let told = Sweep::read(flood.to_string().as_bytes()).unwrap_err();
+        assert!(told.0.last().unwrap().detail.contains("250000 places at most"), "{told}");
         let explore = self::sweep(json!({"/analysis/explore": [{}]}), "grid").unwrap();
         assert_eq!(explore.run(0).unwrap_err().0[0].pointer, "/sweep/replace/~1analysis~1explore/0");
     }
