@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
-/// Trace a model with varied parameters and find the first limit load of each path.
+/// Trace a model with varied parameters and find the first limit load of each path, or other values of it.
 ///
 /// FILE is a job request with `"sweep": {"replace": {POINTER: [VALUES]}}`, or one without where --replace is given.
 #[derive(Debug, clap::Args)]
@@ -30,6 +30,14 @@ pub struct Arguments {
     /// How the values of several parameters are combined.
     #[arg(long, value_enum)]
     combine: Option<CombineName>,
+    /// Tell a value at a place of each path, such as `tip at limit=tip.x@first_limit` or `load at 2=load_factor@tip.x=2`,
+    /// instead of those in the file; the first one is drawn. Repeat the option for further ones.
+    #[arg(long, value_name = "NAME=COLUMN@PLACE", value_parser = response)]
+    response: Vec<(String, serde_json::Value)>,
+    /// Trace up to N further runs, each in the middle of two values of the only parameter between which the first response,
+    /// or the first limit load, changes most.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    refine: u32,
     /// Paths traced at a time. Default: one per processor.
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
@@ -61,11 +69,27 @@ fn replacement(argument: &str) -> Result<(String, Vec<serde_json::Value>), Strin
     Ok((pointer.to_owned(), values))
 }
 
+/// A response as a file has it. Its name ends at the first `=`, and the place is a name, or a column and a number.
+fn response(argument: &str) -> Result<(String, serde_json::Value), String> {
+    let expected = "NAME=COLUMN@PLACE is expected";
+    let (name, rest) = argument.split_once('=').ok_or(expected)?;
+    let (value, at) = rest.split_once('@').ok_or(expected)?;
+    let at = match at.rsplit_once('=') {
+        Some((column, number)) => {
+            let number: f64 = number.parse().map_err(|_| format!("`{number}` is not a number"))?;
+            serde_json::json!({"value": column, "reaches": number})
+        }
+        None => at.into(),
+    };
+    Ok((name.to_owned(), serde_json::json!({"value": value, "at": at})))
+}
+
 pub fn run(arguments: &Arguments) -> Outcome {
     arguments.written.check()?;
-    let sweep = Sweep::read(&arguments.text()?).map_err(input::refused)?;
+    let mut sweep = Sweep::read(&arguments.text()?).map_err(input::refused)?;
     let threads = arguments.threads.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
-    let progress = findings::progress_bar(sweep.runs());
+    let refine = arguments.refinement(&sweep)?;
+    let progress = findings::progress_bar(sweep.runs() + refine);
     let written = arguments.paths.as_deref().map(Paths::in_folder).transpose()?;
     let accept = |run: u64, judged: &JudgedIncrement| match &written {
         Some(paths) => paths.write(run, judged),
@@ -77,7 +101,17 @@ pub fn run(arguments: &Arguments) -> Outcome {
             paths.close(row.run);
         }
     };
-    let rows = sweeps::run(&sweep, threads, &accept, &done).map_err(input::refused)?;
+    let mut rows = sweeps::run(&sweep, 0..sweep.runs(), threads, &accept, &done).map_err(input::refused)?;
+    let all = sweep.runs() + refine;
+    while sweep.runs() < all {
+        let most = usize::try_from(all - sweep.runs()).unwrap_or(usize::MAX);
+        let values = sweeps::further_values(&sweep.variation, &rows, most);
+        if values.is_empty() {
+            break;
+        }
+        let runs = sweep.add_values(values).map_err(input::refused)?;
+        rows.extend(sweeps::run(&sweep, runs, threads, &accept, &done).map_err(input::refused)?);
+    }
     progress.finish_and_clear();
     if let Some(failure) = written.and_then(Paths::failure) {
         return Err(failure);
@@ -89,10 +123,23 @@ pub fn run(arguments: &Arguments) -> Outcome {
 }
 
 impl Arguments {
+    /// Runs that a refinement may add.
+    ///
+    /// # Errors
+    /// Not one parameter of numbers.
+    fn refinement(&self, sweep: &Sweep) -> Result<u64, Failure> {
+        let numbers = |values: &[serde_json::Value]| values.iter().all(serde_json::Value::is_number);
+        match sweep.variation.parameters.as_slice() {
+            _ if self.refine == 0 => Ok(0),
+            [one] if numbers(&one.values) && one.values.len() > 1 => Ok(u64::from(self.refine)),
+            _ => Err(Failure::Input(vec!["--refine: one parameter with two numbers or more is expected".to_owned()])),
+        }
+    }
+
     /// The document, with the values of the command line instead of its own.
     fn text(&self) -> Result<Vec<u8>, Failure> {
         let text = self.model.text()?;
-        if self.replace.is_empty() && self.combine.is_none() {
+        if self.replace.is_empty() && self.combine.is_none() && self.response.is_empty() {
             return Ok(text);
         }
         let mut replace = serde_json::Map::new();
@@ -108,6 +155,12 @@ impl Arguments {
         let Some(sweep) = sweep.as_object_mut() else { return Ok(text) };
         if !replace.is_empty() {
             sweep.insert("replace".to_owned(), replace.into());
+        }
+        if !self.response.is_empty() {
+            sweep.insert(
+                "responses".to_owned(),
+                self.response.iter().cloned().collect::<serde_json::Map<_, _>>().into(),
+            );
         }
         if let Some(combine) = self.combine {
             let name = match combine {

@@ -1,12 +1,13 @@
 //! The runs of a sweep, made one by one from its text; mistakes in a run are reported at their place in the sweep.
 
 use crate::model::input::error::{InputError, InputErrors};
-use crate::model::input::limits::{MAX_NAME_BYTES, MAX_SWEEP_PLACES, MAX_SWEEP_RUNS};
+use crate::model::input::limits::{MAX_NAME_BYTES, MAX_SWEEP_PLACES, MAX_SWEEP_RESPONSES, MAX_SWEEP_RUNS};
 use crate::model::request::JobRequest;
 use crate::model::request::sweep::{Combine, SweepParameter, Variation};
 use crate::model::template::{Template, escaped, item};
 use crate::model::{check, decode};
 use serde_json::Value;
+use std::ops::Range;
 
 /// The step of a pointer that stands for every item.
 const ANY: &str = "*";
@@ -42,6 +43,10 @@ impl Sweep {
         let name = name.filter(|name| name.len() <= MAX_NAME_BYTES).map(str::to_owned);
         let posted = base.as_object_mut().and_then(|members| members.remove("sweep")).unwrap_or_default();
         let mut mistakes = Vec::new();
+        if form.responses.len() > MAX_SWEEP_RESPONSES {
+            let detail = format!("found {} responses; at most {MAX_SWEEP_RESPONSES} are taken", form.responses.len());
+            mistakes.push(InputError::new("/sweep/responses", detail));
+        }
         let mut parameters = Vec::with_capacity(form.replace.len());
         let mut places = Vec::new();
         for pointer in form.replace {
@@ -61,7 +66,7 @@ impl Sweep {
             }
         };
         if mistakes.is_empty() {
-            let variation = Variation { parameters, combine: form.combine };
+            let variation = Variation { parameters, combine: form.combine, responses: form.responses };
             let template = Template::new(base, &places, &variation.values(0));
             Ok(Self { name, variation, runs, template })
         } else {
@@ -72,6 +77,21 @@ impl Sweep {
     /// The number of runs, at least 1.
     pub fn runs(&self) -> u64 {
         self.runs
+    }
+
+    /// Adds values of the only parameter, a run for each; the new runs.
+    ///
+    /// # Errors
+    /// There are several parameters, or too many runs.
+    pub fn add_values(&mut self, values: Vec<Value>) -> Result<Range<u64>, InputErrors> {
+        let (before, combine) = (self.runs, self.variation.combine);
+        let several = "further values need one parameter, and these are several";
+        let [parameter] = self.variation.parameters.as_mut_slice() else {
+            return Err(InputErrors(vec![InputError::new("/sweep/replace", several)]));
+        };
+        parameter.values.extend(values);
+        self.runs = count(combine, &self.variation.parameters).map_err(|error| InputErrors(vec![error]))?;
+        Ok(before..self.runs)
     }
 
     /// Makes and checks a run.

@@ -1,7 +1,39 @@
-//! Writes a row of CSV (RFC 4180), cell by cell.
+//! Writes a row of a table, cell by cell: as CSV (RFC 4180), or as values.
+
+use serde_json::Value;
 
 /// The characters with which formulas begin. Spreadsheets may skip white space before them.
 const FORMULAS: [char; 4] = ['=', '+', '-', '@'];
+
+/// Receives the cells of a row in the order of its columns.
+pub trait Cells {
+    /// A text of a user.
+    fn text(&mut self, cell: &str);
+
+    /// A name of the interface, or nothing.
+    fn word(&mut self, cell: &str);
+
+    fn count(&mut self, value: u64);
+
+    fn number(&mut self, value: f64);
+
+    fn nothing(&mut self);
+
+    /// A number, or nothing.
+    fn optional(&mut self, value: Option<f64>) {
+        match value {
+            Some(value) => self.number(value),
+            None => self.nothing(),
+        }
+    }
+
+    /// The given number of cells, empty for missing numbers.
+    fn numbers(&mut self, values: &[f64], cells: usize) {
+        for place in 0..cells {
+            self.optional(values.get(place).copied());
+        }
+    }
+}
 
 /// A row that is being written.
 #[derive(Default)]
@@ -14,9 +46,18 @@ impl CsvRow {
         self.0.push(',');
     }
 
-    /// A text, in quotes if necessary. A text that a spreadsheet would take for a formula is preceded by an apostrophe; numbers are
+    /// The line with its line feed.
+    pub fn end(mut self) -> String {
+        self.0.pop();
+        self.0.push('\n');
+        self.0
+    }
+}
+
+impl Cells for CsvRow {
+    /// In quotes if necessary. A text that a spreadsheet would take for a formula is preceded by an apostrophe; numbers are
     /// written by [`number`](Self::number), without one.
-    pub fn text(&mut self, cell: &str) {
+    fn text(&mut self, cell: &str) {
         let apostrophe = if cell.trim_start().starts_with(FORMULAS) { "'" } else { "" };
         if cell.contains(['"', ',', '\n', '\r']) {
             self.raw(&format!("\"{apostrophe}{}\"", cell.replace('"', "\"\"")));
@@ -25,31 +66,43 @@ impl CsvRow {
         }
     }
 
+    fn word(&mut self, cell: &str) {
+        self.raw(cell);
+    }
+
+    fn count(&mut self, value: u64) {
+        self.raw(&value.to_string());
+    }
+
     /// The shortest text from which the same number is read, with an exponent if that is shorter.
-    pub fn number(&mut self, value: f64) {
+    fn number(&mut self, value: f64) {
         self.raw(&format!("{value:?}"));
     }
 
-    /// A number, or an empty cell.
-    pub fn optional(&mut self, value: Option<f64>) {
-        match value {
-            Some(value) => self.number(value),
-            None => self.raw(""),
-        }
+    fn nothing(&mut self) {
+        self.raw("");
+    }
+}
+
+impl Cells for Vec<Value> {
+    fn text(&mut self, cell: &str) {
+        self.push(Value::from(cell));
     }
 
-    /// The given number of cells, empty for missing numbers.
-    pub fn numbers(&mut self, values: &[f64], cells: usize) {
-        for place in 0..cells {
-            self.optional(values.get(place).copied());
-        }
+    fn word(&mut self, cell: &str) {
+        self.push(if cell.is_empty() { Value::Null } else { Value::from(cell) });
     }
 
-    /// The line with its line feed.
-    pub fn end(mut self) -> String {
-        self.0.pop();
-        self.0.push('\n');
-        self.0
+    fn count(&mut self, value: u64) {
+        self.push(Value::from(value));
+    }
+
+    fn number(&mut self, value: f64) {
+        self.push(Value::from(value));
+    }
+
+    fn nothing(&mut self) {
+        self.push(Value::Null);
     }
 }
 

@@ -8,8 +8,9 @@ use crate::check::measure::Errors;
 use crate::model::JobRequest;
 use crate::model::request::recorded_forces::{element_label, recorded_elements, recorded_supports};
 use crate::model::request::{Contact, Element, Record};
-use crate::output::csv::CsvRow;
+use crate::output::csv::{Cells, CsvRow};
 use crate::result::increment::{Diagnostics, Increment, PointKind, Status};
+use serde_json::Value;
 use std::collections::HashSet;
 
 pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
@@ -69,64 +70,70 @@ impl Table {
         }
     }
 
-    /// The header line with its line feed.
-    pub fn header(&self) -> String {
-        let mut line = CsvRow::default();
-        for name in ["index", "stage", "load_factor", "arc_length", "step", "point", "bifurcation", "event"] {
-            line.text(name);
-        }
-        let tangents = self.dimension - 1;
+    /// The names of the columns.
+    pub fn names(&self) -> Vec<String> {
         let axes = || AXES.iter().take(self.dimension);
+        let mut names: Vec<String> =
+            ["index", "stage", "load_factor", "arc_length", "step", "point", "bifurcation", "event"]
+                .map(str::to_owned)
+                .into();
         for node in &self.nodes {
-            axes().for_each(|axis| line.text(&format!("{node}.{axis}")));
+            names.extend(axes().map(|axis| format!("{node}.{axis}")));
         }
         for ContactColumns { node, obstacle } in &self.contacts {
-            for name in ["status", "gap", "normal_reaction"] {
-                line.text(&format!("{node}/{obstacle}.{name}"));
-            }
+            names.extend(["status", "gap", "normal_reaction"].map(|name| format!("{node}/{obstacle}.{name}")));
             for name in ["tangential_reaction", "slip", "slip_total"] {
-                for tangent in 1..=tangents {
-                    line.text(&format!("{node}/{obstacle}.{name}.{tangent}"));
-                }
+                names.extend((1..self.dimension).map(|tangent| format!("{node}/{obstacle}.{name}.{tangent}")));
             }
-            axes().for_each(|axis| line.text(&format!("{node}/{obstacle}.reaction.{axis}")));
+            names.extend(axes().map(|axis| format!("{node}/{obstacle}.reaction.{axis}")));
         }
         for ElementColumns { label, is_bar, .. } in &self.elements {
             if *is_bar {
-                line.text(&format!("elements/{label}.axial_force"));
+                names.push(format!("elements/{label}.axial_force"));
             } else {
-                axes().for_each(|axis| line.text(&format!("elements/{label}.force.{axis}")));
+                names.extend(axes().map(|axis| format!("elements/{label}.force.{axis}")));
             }
         }
         for node in &self.supports {
-            axes().for_each(|axis| line.text(&format!("{node}.reaction.{axis}")));
+            names.extend(axes().map(|axis| format!("{node}.reaction.{axis}")));
         }
-        axes().for_each(|axis| line.text(&format!("applied_force_{axis}")));
-        for name in ["external_work", "strain_energy", "dissipated"] {
-            line.text(name);
-        }
-        for name in ["elapsed_s", "residual", "complementarity", "energy_error", "error_estimate"] {
-            line.text(name);
-        }
-        for (name, _) in counts(&Diagnostics::default()) {
-            line.text(name);
-        }
-        for name in Errors::NAMES {
-            line.text(&format!("measure.{name}"));
-        }
+        names.extend(axes().map(|axis| format!("applied_force_{axis}")));
+        names.extend(["external_work", "strain_energy", "dissipated"].map(str::to_owned));
+        names.extend(["elapsed_s", "residual", "complementarity", "energy_error", "error_estimate"].map(str::to_owned));
+        names.extend(counts(&Diagnostics::default()).map(|(name, _)| name.to_owned()));
+        names.extend(Errors::NAMES.map(|name| format!("measure.{name}")));
+        names
+    }
+
+    /// The header line with its line feed.
+    pub fn header(&self) -> String {
+        let mut line = CsvRow::default();
+        self.names().iter().for_each(|name| line.text(name));
         line.end()
     }
 
     /// The line of an increment with its line feed; without a measure the cells of the measure are empty.
     pub fn row(&self, increment: &Increment, measure: Option<&Errors>) -> String {
         let mut line = CsvRow::default();
-        line.raw(&increment.index.to_string());
+        self.write(increment, measure, &mut line);
+        line.end()
+    }
+
+    /// The values of an increment in the order of the columns, null where there is none.
+    pub fn values(&self, increment: &Increment, measure: Option<&Errors>) -> Vec<Value> {
+        let mut values = Vec::new();
+        self.write(increment, measure, &mut values);
+        values
+    }
+
+    fn write(&self, increment: &Increment, measure: Option<&Errors>, line: &mut impl Cells) {
+        line.count(increment.index);
         line.text(&increment.stage);
         line.number(increment.load_factor);
         line.number(increment.arc_length);
         line.number(increment.step);
-        line.raw(point_kind(increment.point.kind));
-        line.raw(if increment.point.bifurcation { "true" } else { "false" });
+        line.word(point_kind(increment.point.kind));
+        line.word(if increment.point.bifurcation { "true" } else { "false" });
         line.text(increment.point.event.as_deref().unwrap_or_default());
         let tangents = self.dimension - 1;
         for node in &self.nodes {
@@ -137,7 +144,7 @@ impl Table {
         let mut rows = increment.contacts.iter().peekable();
         for columns in &self.contacts {
             let state = rows.next_if(|row| *row.node == columns.node && *row.obstacle == columns.obstacle);
-            line.raw(state.map_or("", |state| status(state.status)));
+            line.word(state.map_or("", |state| status(state.status)));
             line.optional(state.map(|state| state.gap));
             line.optional(state.map(|state| state.normal_reaction));
             line.numbers(state.map(|state| state.tangential_reaction.as_slice()).unwrap_or_default(), tangents);
@@ -173,10 +180,9 @@ impl Table {
             line.number(value);
         }
         for (_, count) in counts(diagnostics) {
-            line.raw(&count.to_string());
+            line.count(count);
         }
         line.numbers(measure.map(Errors::values).as_ref().map_or(&[], <[f64; _]>::as_slice), Errors::NAMES.len());
-        line.end()
     }
 }
 

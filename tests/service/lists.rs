@@ -43,7 +43,14 @@ async fn stored(store: &dyn Store, summary: &str) {
         max_increments: 1,
         ..job(3)
     };
-    let run = NewRun { name: None, request: large, plan: "{}".to_owned(), values: "[]".to_owned(), max_increments: 1 };
+    let run = NewRun {
+        name: None,
+        request: large,
+        plan: "{}".to_owned(),
+        values: "[]".to_owned(),
+        asked: None,
+        max_increments: 1,
+    };
     store.submit_sweep(NewSweep { whole, runs: vec![run] }).await.expect("stored");
 }
 

@@ -39,7 +39,13 @@ fn branching(index: u64, trail: Option<&str>, alternatives: &[u64]) -> Line {
 async fn completed(store: &dyn Store, lines: &[Line]) -> Uuid {
     let claim = store.claim("worker", MINUTE).await.expect("an answer").expect("a job");
     store.append(&claim.lease, &batch(lines), MINUTE).await.expect("stored");
-    let ending = Ending { status: Status::Completed, stop_reason: None, report: Some("{}".to_owned()), error: None };
+    let ending = Ending {
+        status: Status::Completed,
+        stop_reason: None,
+        report: Some("{}".to_owned()),
+        error: None,
+        responses: None,
+    };
     store.finish(&claim.lease, &Batch::default(), &ending).await.expect("an answer");
     claim.lease.job
 }
@@ -64,6 +70,7 @@ async fn a_sweep_ends_with_its_runs_however_they_do(database: Database) {
         request: format!("request {number}"),
         plan: "{}".to_owned(),
         values: format!("[{number}.50,\"a \\\"name\\\"\"]"),
+        asked: (number == 0).then(|| "{\"load\":{}}".to_owned()),
         max_increments: 9,
     };
     let whole = |key: &str| NewJob {
@@ -98,7 +105,10 @@ async fn a_sweep_ends_with_its_runs_however_they_do(database: Database) {
         store.append(&claim.lease, &batch, MINUTE).await.expect("stored");
     }
     let stop_reason = Some("stages_completed".to_owned());
-    let ending = Ending { status: Status::Completed, stop_reason, report: Some("{}".to_owned()), error: None };
+    assert_eq!(claim.asked.as_deref(), Some("{\"load\":{}}"));
+    let responses = Some("{\"load\":0.70}".to_owned());
+    let ending =
+        Ending { status: Status::Completed, stop_reason, report: Some("{}".to_owned()), error: None, responses };
     store.finish(&claim.lease, &Batch::default(), &ending).await.expect("an answer");
     store.claim("lost", Duration::ZERO).await.expect("an answer").expect("a job");
     tokio::time::sleep(Duration::from_millis(5)).await;
@@ -128,6 +138,8 @@ async fn a_sweep_ends_with_its_runs_however_they_do(database: Database) {
     assert_eq!(rows[0]["values"], serde_json::json!([0.5, "a \"name\""]));
     assert_eq!((&rows[0]["first_limit"]["load_factor"], &rows[0]["last_index"]), (&0.1.into(), &1.into()));
     assert_eq!(rows[0]["stop_reason"], "stages_completed");
+    assert_eq!(rows[0]["responses"], serde_json::json!({"load": 0.7}));
+    assert!(rows[1]["responses"].is_null());
     assert!(rows[1]["error"].as_str().expect("text").contains("was lost"));
     assert_eq!(rows[2]["error"], "it was deleted");
     let ended = store.job(sweep.id).await.expect("an answer").expect("a sweep");

@@ -30,6 +30,7 @@ async fn sweep(store: &dyn Store, owner: &str, runs: usize) -> Uuid {
         request: "{}".to_owned(),
         plan: "{}".to_owned(),
         values: "[]".to_owned(),
+        asked: None,
         max_increments: 1,
     };
     let whole = NewJob { task: Task::Sweep, max_increments: runs as u64, ..of(owner) };

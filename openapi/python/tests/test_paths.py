@@ -256,9 +256,12 @@ class Service(unittest.TestCase):
 
     @ALL
     def test_tables_of_sweeps(self):
-        sweep = self.client.sweep(self.client.scene("arch-type-truss"), {"/model/contacts/0/friction": numpy.array([0, 0.5])})
+        friction = {"/model/contacts/0/friction": numpy.array([0, 0.5])}
+        responses = {"limit": {"at": "first_limit"}}
+        sweep = self.client.sweep(self.client.scene("arch-type-truss"), friction, responses=responses)
         sweep.wait()
         table = sweep.to_frame()
+        self.assertEqual(list(table["limit"]), list(table["limit.load_factor"]))
         self.assertEqual(list(table["/model/contacts/0/friction"]), [0, 0.5])
         self.assertTrue(all(math.isfinite(value) for value in table["limit.load_factor"]))
 

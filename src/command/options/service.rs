@@ -12,7 +12,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::signal::unix::{Signal, SignalKind, signal};
-use tracing_subscriber::EnvFilter;
+use tracing_subscriber::filter::Targets;
+use tracing_subscriber::prelude::*;
 
 #[derive(Debug, Clone, clap::Args)]
 #[group(skip)]
@@ -66,14 +67,14 @@ impl Arguments {
 
     /// Starts the log, with every setting in force.
     pub fn start_log(&self, settings: &[Setting]) {
-        let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new("info"));
-        let log = tracing_subscriber::fmt()
-            .with_env_filter(filter)
-            .with_ansi(std::io::stderr().is_terminal())
-            .with_writer(std::io::stderr);
+        let chosen = std::env::var("RUST_LOG").ok().and_then(|targets| targets.parse::<Targets>().ok());
+        let targets = chosen.unwrap_or_else(|| Targets::new().with_default(tracing::Level::INFO));
+        let log =
+            tracing_subscriber::fmt::layer().with_ansi(std::io::stderr().is_terminal()).with_writer(std::io::stderr);
+        let layers = tracing_subscriber::registry().with(targets);
         match self.log {
-            LogFormat::Text => log.init(),
-            LogFormat::Json => log.json().init(),
+            LogFormat::Text => layers.with(log).init(),
+            LogFormat::Json => layers.with(log.json()).init(),
         }
         // A panic is logged within the span of the job whose solve panicked.
         std::panic::set_hook(Box::new(|panic| tracing::error!(%panic, "a panic")));

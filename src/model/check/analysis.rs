@@ -177,8 +177,12 @@ fn arc_length(arc_length: &ArcLength, at: &DocumentPlace, mistakes: &mut Mistake
 pub(super) fn arc_lengths(arc_length: &ArcLength, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
     let &ArcLength { initial, min, max, displacement_scale, load_scale, jump: _ } = arc_length;
     let mut sane = true;
-    for (field, value) in [("initial", initial), ("min", min), ("max", max)] {
-        sane &= numbers::positive(value, &at.member(field), mistakes);
+    sane &= numbers::positive(max, &at.member("max"), mistakes);
+    // What is not given is at most `max`, and would be blamed with it.
+    for (field, value) in [("initial", initial), ("min", min)] {
+        if sane || value != max {
+            sane &= numbers::positive(value, &at.member(field), mistakes);
+        }
     }
     for (field, scale) in [("displacement_scale", displacement_scale), ("load_scale", load_scale)] {
         if let Some(scale) = scale {

@@ -15,7 +15,7 @@ mod tests;
 use crate::model::input::json::Json;
 use crate::model::input::mistakes::Mistakes;
 use crate::model::{FollowRequest, InputError, InputErrors, JobRequest, StudyRequest};
-use reader::{Fields, Input};
+use reader::{Fields, Input, Object};
 
 const JOB_REQUEST: Fields = Fields { what: "a job request", known: &["model", "analysis"], later: &[] };
 const SWEEP_REQUEST: Fields = Fields { what: "a sweep", known: &["model", "analysis", "sweep"], later: &[] };
@@ -45,8 +45,12 @@ pub fn study(text: &[u8]) -> Result<StudyRequest, InputErrors> {
 /// As for [`decode`].
 pub fn replacements(text: &[u8]) -> Result<sweep::Form, InputErrors> {
     read(text, SWEEP_REQUEST.what, |input, mistakes| {
-        let object = input.object(&SWEEP_REQUEST, mistakes)?;
+        let object = request(input, &SWEEP_REQUEST, mistakes)?;
         object.required("model", mistakes, |_, _| Some(()))?;
+        if !input.has("sweep") {
+            let example = r#"{"replace": {"/model/contacts/0/friction": [0.1, 0.2]}}"#;
+            return input.note(&format!("the field `sweep` is missing; it says what varies, as `{example}`"), mistakes);
+        }
         object.required("sweep", mistakes, sweep::sweep)
     })
 }
@@ -79,15 +83,24 @@ fn read<T>(text: &[u8], what: &str, reader: fn(&Input, &mut Mistakes) -> Option<
     request.ok_or_else(|| InputErrors(vec![InputError::new("", format!("the document could not be read as {what}"))]))
 }
 
+/// The members of a request; a model that stands alone is one mistake, not one for each of its members.
+fn request<'a>(input: &Input<'a>, fields: &Fields, mistakes: &mut Mistakes) -> Option<Object<'a>> {
+    if input.has("nodes") && !input.has("model") {
+        let detail = "the fields of a model stand where `model` is expected: put them into it, `{\"model\": {...}}`";
+        return input.note(detail, mistakes);
+    }
+    input.object(fields, mistakes)
+}
+
 fn job_request(input: &Input, mistakes: &mut Mistakes) -> Option<JobRequest> {
-    let object = input.object(&JOB_REQUEST, mistakes)?;
+    let object = request(input, &JOB_REQUEST, mistakes)?;
     let model = object.required("model", mistakes, model::model);
     let analysis = object.with_default("analysis", Default::default(), mistakes, analysis::analysis);
     Some(JobRequest { model: model?, analysis: analysis? })
 }
 
 fn study_request(input: &Input, mistakes: &mut Mistakes) -> Option<StudyRequest> {
-    let object = input.object(&STUDY_REQUEST, mistakes)?;
+    let object = request(input, &STUDY_REQUEST, mistakes)?;
     let model = object.required("model", mistakes, model::model);
     let analysis = object.with_default("analysis", Default::default(), mistakes, analysis::analysis);
     let study = object.with_default("study", Default::default(), mistakes, study::study);

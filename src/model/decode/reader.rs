@@ -41,6 +41,13 @@ impl<'a> Input<'a> {
         Self { value, at: DocumentPlace::ROOT }
     }
 
+    /// Notes what is wrong with the value.
+    pub fn note<T>(&self, detail: &str, mistakes: &mut Mistakes) -> Option<T> {
+        mistakes.add(&self.at, || detail);
+        None
+    }
+
+    /// Notes what is expected in place of the value.
     pub fn refuse<T>(&self, expected: &str, mistakes: &mut Mistakes) -> Option<T> {
         mistakes.add(&self.at, || format!("found {}; {expected} is expected", self.value.describe()));
         None
@@ -50,8 +57,16 @@ impl<'a> Input<'a> {
         matches!(self.value, Json::Text(_))
     }
 
+    pub fn is_object(&self) -> bool {
+        matches!(self.value, Json::Object(_))
+    }
+
     pub fn is_list(&self) -> bool {
         matches!(self.value, Json::Array(_))
+    }
+
+    pub fn has(&self, name: &str) -> bool {
+        matches!(self.value, Json::Object(members) if members.iter().any(|(member, _)| member == name))
     }
 
     pub fn list<T>(
@@ -60,7 +75,7 @@ impl<'a> Input<'a> {
         read: impl Fn(&Input, &mut Mistakes) -> Option<T>,
     ) -> Option<Vec<T>> {
         let Json::Array(items) = self.value else {
-            return self.refuse("an array", mistakes);
+            return self.refuse("an array, `[...]`,", mistakes);
         };
         let mut list = Vec::with_capacity(items.len());
         for (index, value) in items.iter().enumerate() {
@@ -76,7 +91,7 @@ impl<'a> Input<'a> {
         read: impl Fn(&Input, &mut Mistakes) -> Option<T>,
     ) -> Option<IndexMap<String, T>> {
         let Json::Object(members) = self.value else {
-            return self.refuse("an object", mistakes);
+            return self.refuse("an object, `{...}`,", mistakes);
         };
         let before = mistakes.count();
         let mut map = IndexMap::with_capacity(members.len());
@@ -112,7 +127,7 @@ impl<'a> Input<'a> {
     /// The value of the member `kind`, which determines the other members of an object.
     pub fn kind<T: Copy>(&self, choices: &Choices<T>, mistakes: &mut Mistakes) -> Option<T> {
         let Json::Object(members) = self.value else {
-            return self.refuse("an object", mistakes);
+            return self.refuse("an object, `{...}`,", mistakes);
         };
         match members.iter().find(|(name, _)| name == "kind") {
             Some((name, value)) => Input { value, at: self.at.member(name) }.choice(choices, mistakes),
@@ -167,7 +182,11 @@ pub(super) fn boolean(input: &Input, mistakes: &mut Mistakes) -> Option<bool> {
 }
 
 pub(super) fn numbers(input: &Input, mistakes: &mut Mistakes) -> Option<Vec<f64>> {
-    input.list(mistakes, number)
+    if input.is_list() {
+        input.list(mistakes, number)
+    } else {
+        input.refuse("an array of numbers, as `[0, 1]`,", mistakes)
+    }
 }
 
 fn unknown_field(name: &str, fields: &Fields) -> String {

@@ -51,6 +51,8 @@ pub const MAX_STUDY_VALUES: f64 = 5e7;
 pub const MAX_SWEEP_RUNS: u64 = 100_000;
 /// Places of a document into which a sweep puts values, those that a step `*` stands for among them.
 pub const MAX_SWEEP_PLACES: usize = 250_000;
+/// Responses of a sweep.
+pub const MAX_SWEEP_RESPONSES: usize = 64;
 
 /// Numbers of a request are zero or lie between this and [`MAX_MAGNITUDE`] in absolute value, so that neither a ratio
 /// of two of them nor its square can overflow or vanish.

@@ -9,6 +9,7 @@
 mod analysis;
 mod record;
 pub mod recorded_forces;
+pub mod response;
 mod structure;
 pub mod study;
 pub mod sweep;

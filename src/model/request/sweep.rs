@@ -1,5 +1,6 @@
 //! A sweep: one model, and values put in places of it, a job each, as `POST /v1/sweeps` and `arcslip sweep` take it.
 
+use crate::model::request::response::Response;
 use crate::model::request::{Analysis, Model};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -26,6 +27,9 @@ pub struct Replacements {
     pub replace: IndexMap<String, Vec<Value>>,
     #[serde(default)]
     pub combine: Combine,
+    /// What is told of each path, by a name of one's own.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub responses: IndexMap<String, Response>,
 }
 
 /// How values of several places meet.
@@ -50,13 +54,15 @@ pub struct SweepParameter {
     pub values: Vec<Value>,
 }
 
-/// What is varied, and how.
+/// What is varied, how, and what is told of each path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct Variation {
     /// In the order of the request.
     pub parameters: Vec<SweepParameter>,
     pub combine: Combine,
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub responses: IndexMap<String, Response>,
 }
 
 impl Variation {

@@ -95,7 +95,11 @@ mod tests {
         let values = values.as_array().cloned().unwrap_or_default();
         let parameter =
             |place| SweepParameter { pointer: format!("/model/contacts/{place}/friction"), values: values.clone() };
-        Variation { parameters: (0..parameters).map(parameter).collect(), combine: Combine::List }
+        Variation {
+            parameters: (0..parameters).map(parameter).collect(),
+            combine: Combine::List,
+            responses: Default::default(),
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The findings of a study as text: CSV, and aligned columns.
 
 use crate::output::columns::{name_of, push_columns};
-use crate::output::csv::CsvRow;
+use crate::output::csv::{Cells, CsvRow};
 use crate::studies::error_against_time::report::StudyReport;
 use crate::studies::error_against_time::row::StudyRow;
 use std::fmt::Write;

@@ -21,8 +21,8 @@ pub enum PlotError {
     Empty,
     #[error("no path of the study has an error yet, so that nothing can be drawn")]
     NoErrors,
-    #[error("no run of the sweep has a limit point yet, so that nothing can be drawn")]
-    NoLimitLoads,
+    #[error("no run of the sweep has a number to draw yet: {sought}")]
+    NothingFound { sought: String },
     #[error("the picture could not be drawn: {0}")]
     Drawing(String),
 }

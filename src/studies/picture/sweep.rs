@@ -1,4 +1,5 @@
-//! The picture of a sweep: the first limit load against the first parameter, one line for each set of values of the others.
+//! The picture of a sweep: its first response, or the first limit load where it asks for none, against the first parameter, one
+//! line for each set of values of the others.
 
 use crate::model::InputError;
 use crate::studies::picture::PlotError;
@@ -117,19 +118,26 @@ fn lines(found: &Found) -> Vec<Line<'_>> {
             None => lines.push(Line { others, rows: vec![row] }),
         }
     }
+    for line in &mut lines {
+        let first = |row: &&Row| row.values.first().and_then(Value::as_f64);
+        // Values between those of the request come after them where a sweep is refined. Words keep their order.
+        if line.rows.iter().all(|row| first(row).is_some()) {
+            line.rows.sort_by(|one, other| first(one).partial_cmp(&first(other)).unwrap_or(std::cmp::Ordering::Equal));
+        }
+    }
     lines
 }
 
 /// The picture as SVG text: the same for the same rows.
 ///
 /// # Errors
-/// No run has a limit point.
+/// No run has a number to draw.
 pub fn svg(found: &Found) -> Result<String, PlotError> {
-    let loads = || found.rows.iter().filter_map(|row| row.first_limit.as_ref().map(|limit| limit.load_factor));
-    let Some(first) = found.variation.parameters.first().filter(|_| loads().next().is_some()) else {
-        return Err(PlotError::NoLimitLoads);
+    let numbers = || found.rows.iter().filter_map(|row| up(found, row));
+    let Some(first) = found.variation.parameters.first().filter(|_| numbers().next().is_some()) else {
+        return Err(PlotError::NothingFound { sought: upwards(found).to_owned() });
     };
-    let (across, load) = (Across::of(&first.values), Axis::showing(loads(), TICKS));
+    let (across, load) = (Across::of(&first.values), Axis::showing(numbers(), TICKS));
     let lines = lines(found);
     let drawn = shapes::svg(CHART + LEGEND, HEIGHT, |sheet| {
         draw_chart(sheet, found, &lines, (&across, &load))?;
@@ -138,17 +146,25 @@ pub fn svg(found: &Found) -> Result<String, PlotError> {
     drawn.map_err(|error| PlotError::Drawing(error.to_string()))
 }
 
+/// The name of what is drawn upwards.
+fn upwards(found: &Found) -> &str {
+    found.variation.responses.keys().next().map_or("first limit load factor", String::as_str)
+}
+
+/// What is drawn upwards of a run, if it has that.
+fn up(found: &Found, row: &Row) -> Option<f64> {
+    match found.variation.responses.keys().next() {
+        Some(name) => row.responses.as_ref()?.get(name)?.as_f64(),
+        None => row.first_limit.as_ref().map(|limit| limit.load_factor),
+    }
+}
+
 fn draw_chart(sheet: &Sheet<'_>, found: &Found, lines: &[Line<'_>], (across, load): (&Across, &Axis)) -> Drawn {
     let (part, _) = sheet.split_horizontally(CHART * FINE);
     let first = found.variation.parameters.first().map(|parameter| place(&parameter.pointer)).unwrap_or_default();
     let sides = [
         Side { name: across.named(&first), range: across.range(), tick: &|at| across.tick(at), ticks: TICKS },
-        Side {
-            name: load.named("first limit load factor"),
-            range: load.range.clone(),
-            tick: &|at| load.tick(at),
-            ticks: TICKS,
-        },
+        Side { name: load.named(upwards(found)), range: load.range.clone(), tick: &|at| load.tick(at), ticks: TICKS },
     ];
     let chart = chart::chart(&part, CHART, Some(found.name.as_deref().unwrap_or("sweep")), sides)?;
     for (number, line) in lines.iter().enumerate() {
@@ -157,12 +173,12 @@ fn draw_chart(sheet: &Sheet<'_>, found: &Found, lines: &[Line<'_>], (across, loa
             .rows
             .iter()
             .map(|row| {
-                let limit = row.first_limit.as_ref()?;
+                let number = up(found, row)?;
                 let at = across.place(row.values.first()?)?;
-                Some(chart.backend_coord(&(at, load.drawn(limit.load_factor))))
+                Some(chart.backend_coord(&(at, load.drawn(number))))
             })
             .collect();
-        // A run without a limit point interrupts the line.
+        // A run without a number interrupts the line.
         if !matches!(across, Across::Named(_)) {
             for stretch in places.split(Option::is_none) {
                 sheet.draw(&PathElement::new(
@@ -203,9 +219,10 @@ fn legend(sheet: &Sheet<'_>, found: &Found, lines: &[Line<'_>]) -> Drawn {
         }
         write("", FAINT, 0)?;
     }
-    let without = found.rows.iter().filter(|row| row.first_limit.is_none()).count();
+    let without = found.rows.iter().filter(|row| up(found, row).is_none()).count();
     if without > 0 {
-        write(&format!("{without} of {} runs without a limit point", found.rows.len()), FAINT, 0)?;
+        let lacking = if found.variation.responses.is_empty() { "a limit point" } else { "this response" };
+        write(&format!("{without} of {} runs without {lacking}", found.rows.len()), FAINT, 0)?;
     }
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 use crate::model::request::sweep::Variation;
 use crate::studies::sweeps::LimitLoad;
+use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -28,6 +29,10 @@ pub struct Row {
     pub last_index: Option<u64>,
     /// The first limit point; null where there is none, or none yet.
     pub first_limit: Option<LimitLoad>,
+    /// By the names of the sweep's `responses`: numbers, or texts such as a status; null where the path does not reach the
+    /// place, or has no such value there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub responses: Option<IndexMap<String, Value>>,
 }
 
 /// A sweep with its runs.

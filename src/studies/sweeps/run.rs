@@ -8,9 +8,9 @@ use crate::resources::budget::{self, Budget};
 use crate::resources::cancel::CancelFlag;
 use crate::resources::panics;
 use crate::result::stop_reason::Outcome;
-use crate::studies::sweeps::{LimitLoad, Row};
+use crate::studies::sweeps::{LimitLoad, ResponseFinder, Row};
 use std::num::NonZeroUsize;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -21,19 +21,20 @@ const STACK_BYTES: usize = 8 << 20;
 /// Receives the increments of the runs, from several threads; those of a run in order. Breaks to end the sweep.
 pub type Accept<'a> = &'a (dyn Fn(u64, &JudgedIncrement) -> ControlFlow<()> + Sync);
 
-/// Traces every run, as many at a time as there are threads; the findings do not depend on their number. `done` is called for each
+/// Traces these runs, as many at a time as there are threads; the findings do not depend on their number. `done` is called for each
 /// run that has ended.
 ///
 /// # Errors
 /// Mistakes in the runs, all of which are checked before the first one is traced.
 pub fn run(
     sweep: &Sweep,
+    runs: Range<u64>,
     threads: NonZeroUsize,
     accept: Accept<'_>,
     done: &(dyn Fn(&Row) + Sync),
 ) -> Result<Vec<Row>, InputErrors> {
-    check(sweep, threads)?;
-    let rows = on_threads(sweep.runs(), threads, |run| {
+    check(sweep, runs.clone(), threads)?;
+    let rows = on_threads(runs, threads, |run| {
         let traced = catch_unwind(AssertUnwindSafe(|| trace(sweep, run, accept)));
         let row = traced.unwrap_or_else(|panic| Ok(panicked(sweep, run, &panics::text(panic.as_ref()))))?;
         done(&row);
@@ -42,14 +43,15 @@ pub fn run(
     rows.into_iter().collect()
 }
 
-/// Checks every run.
-fn check(sweep: &Sweep, threads: NonZeroUsize) -> Result<(), InputErrors> {
-    let checked = on_threads(sweep.runs(), threads, |run| {
+/// Checks these runs.
+fn check(sweep: &Sweep, runs: Range<u64>, threads: NonZeroUsize) -> Result<(), InputErrors> {
+    let checked = on_threads(runs.clone(), threads, |run| {
         let request = sweep.run(run)?.request;
+        ResponseFinder::new(&sweep.variation.responses, &request)?;
         Scene::new(&request).map_err(|errors| sweep.located(run, errors)).map(|_| ())
     });
     let mut mistakes = RunMistakes::default();
-    for (run, checked) in (0..).zip(checked) {
+    for (run, checked) in runs.zip(checked) {
         mistakes.note(run, checked.err());
     }
     mistakes.result(sweep)
@@ -61,10 +63,12 @@ fn trace(sweep: &Sweep, run: u64, accept: Accept<'_>) -> Result<Row, InputErrors
     let cancel = CancelFlag::default();
     let mut path = JudgedPath::new(&request, &scene, cancel.clone());
     let (mut first_limit, mut last_index) = (None, None);
+    let mut responses = ResponseFinder::new(&sweep.variation.responses, &request)?;
     for judged in path.by_ref() {
         if first_limit.is_none() {
             first_limit = LimitLoad::at(&judged.increment);
         }
+        responses.take(&judged.increment, Some(&judged.measure));
         last_index = Some(judged.increment.index);
         if accept(run, &judged).is_break() {
             cancel.cancel();
@@ -86,6 +90,7 @@ fn trace(sweep: &Sweep, run: u64, accept: Accept<'_>) -> Result<Row, InputErrors
         error,
         last_index,
         first_limit,
+        responses: responses.found(),
     })
 }
 
@@ -100,19 +105,20 @@ fn panicked(sweep: &Sweep, run: u64, text: &str) -> Row {
         error: Some(format!("the solver panicked: {text}")),
         last_index: None,
         first_limit: None,
+        responses: None,
     }
 }
 
-/// Calls `work` for each number below `count` on the given number of threads; the results are in order.
-fn on_threads<T: Send>(count: u64, threads: NonZeroUsize, work: impl Fn(u64) -> T + Sync) -> Vec<T> {
+/// Calls `work` for each of these numbers on the given number of threads; the results are in order.
+fn on_threads<T: Send>(numbers: Range<u64>, threads: NonZeroUsize, work: impl Fn(u64) -> T + Sync) -> Vec<T> {
     // Each thread has its own.
     let bounds = budget::bounds();
-    let next = AtomicU64::new(0);
+    let next = AtomicU64::new(numbers.start);
     let results = Mutex::new(Vec::new());
     let take_part = || {
         loop {
             let number = next.fetch_add(1, Ordering::Relaxed);
-            if number >= count {
+            if number >= numbers.end {
                 return;
             }
             let budget = Budget::new(CancelFlag::default(), bounds);
@@ -121,7 +127,8 @@ fn on_threads<T: Send>(count: u64, threads: NonZeroUsize, work: impl Fn(u64) -> 
         }
     };
     std::thread::scope(|scope| {
-        let others = threads.get().min(usize::try_from(count).unwrap_or(usize::MAX)) - 1;
+        let others =
+            threads.get().min(usize::try_from(numbers.end - numbers.start).unwrap_or(usize::MAX)).saturating_sub(1);
         for _ in 0..others {
             // If no further thread can be started, there are fewer.
             if std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, take_part).is_err() {

@@ -2,7 +2,7 @@
 
 use crate::model::InputError;
 use crate::output::columns::{name_of, push_columns};
-use crate::output::csv::CsvRow;
+use crate::output::csv::{Cells, CsvRow};
 use crate::studies::sweeps::{Found, Row};
 use serde_json::Value;
 use std::fmt::Write;
@@ -20,8 +20,8 @@ const COLUMNS: [&str; 9] = [
 ];
 
 impl Found {
-    /// One line per run: its number, its job at a service, its values under their pointers, and its findings. A null value is an
-    /// empty cell.
+    /// One line per run: its number, its job at a service, its values under their pointers, its findings, and its responses under
+    /// their names. A null value is an empty cell.
     ///
     /// # Errors
     /// None in practice: a name that cannot be written is a defect.
@@ -30,9 +30,10 @@ impl Found {
         ["run", "job"].iter().for_each(|name| header.raw(name));
         self.variation.parameters.iter().for_each(|parameter| header.text(&parameter.pointer));
         COLUMNS.iter().for_each(|name| header.raw(name));
+        self.variation.responses.keys().for_each(|name| header.text(name));
         let mut text = header.end();
         for row in &self.rows {
-            text.push_str(&csv_row(row)?);
+            text.push_str(&csv_row(row, self.variation.responses.keys())?);
         }
         Ok(text)
     }
@@ -47,17 +48,24 @@ impl Found {
         let _ = writeln!(text, "{}\n", self.name.as_deref().unwrap_or("sweep"));
         let mut header = vec!["run".to_owned()];
         header.extend(self.variation.parameters.iter().map(|one| InputError::new(one.pointer.as_str(), "").place()));
-        header.extend(["limit load", "kind", "at increment", "end"].map(str::to_owned));
+        header.extend(["limit load", "kind", "at increment"].map(str::to_owned));
+        header.extend(self.variation.responses.keys().cloned());
+        header.push("end".to_owned());
         let mut cells = vec![header];
         for row in &self.rows {
-            cells.push(text_row(row)?);
+            cells.push(text_row(row, self.variation.responses.keys())?);
         }
         push_columns(&mut text, &cells);
         Ok(text)
     }
 }
 
-fn csv_row(row: &Row) -> serde_json::Result<String> {
+/// The responses of a row in the order of their names, null where there is none.
+fn responses<'a>(row: &'a Row, names: impl Iterator<Item = &'a String>) -> impl Iterator<Item = &'a Value> {
+    names.map(|name| row.responses.as_ref().and_then(|found| found.get(name)).unwrap_or(&Value::Null))
+}
+
+fn csv_row<'a>(row: &'a Row, names: impl Iterator<Item = &'a String>) -> serde_json::Result<String> {
     let mut line = CsvRow::default();
     line.raw(&row.run.to_string());
     line.raw(row.job.as_deref().unwrap_or_default());
@@ -81,10 +89,17 @@ fn csv_row(row: &Row) -> serde_json::Result<String> {
         None => (0..5).for_each(|_| line.raw("")),
     }
     line.text(row.error.as_deref().unwrap_or_default());
+    for value in responses(row, names) {
+        match value {
+            Value::Null => line.nothing(),
+            Value::Number(number) => line.raw(&number.to_string()),
+            other => line.text(&shown(other)),
+        }
+    }
     Ok(line.end())
 }
 
-fn text_row(row: &Row) -> serde_json::Result<Vec<String>> {
+fn text_row<'a>(row: &'a Row, names: impl Iterator<Item = &'a String>) -> serde_json::Result<Vec<String>> {
     let mut cells = vec![row.run.to_string()];
     cells.extend(row.values.iter().map(shown));
     match &row.first_limit {
@@ -93,6 +108,11 @@ fn text_row(row: &Row) -> serde_json::Result<Vec<String>> {
         }
         None => cells.extend(["-", "-", "-"].map(str::to_owned)),
     }
+    cells.extend(responses(row, names).map(|value| match value {
+        Value::Null => "-".to_owned(),
+        Value::Number(number) => number.as_f64().map_or_else(|| number.to_string(), |number| format!("{number:.9e}")),
+        other => shown(other),
+    }));
     cells.push(row.stop_reason.clone().unwrap_or_else(|| row.status.clone()));
     Ok(cells)
 }

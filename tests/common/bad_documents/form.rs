@@ -47,6 +47,8 @@ pub fn wrong_form() -> Vec<BadDocument> {
     let ball = "/model/obstacles/floor";
     let missing = |name, removed, pointer, detail| BadDocument { name, text: without(removed), pointer, detail };
     vec![
+        raw("a model alone", good_request()["model"].to_string(), "put them into it, `{\"model\": {...}}`"),
+        at("a largest arc length of 0", "/analysis/arc_length/max", json!(0), "found 0.0; a number above 0"),
         missing("no model", "/model", "", "the field `model` is missing"),
         missing("no dimension", "/model/dimension", "/model", "the field `dimension` is missing"),
         missing("no nodes", "/model/nodes", "/model", "the field `nodes` is missing"),
@@ -71,8 +73,13 @@ pub fn wrong_form() -> Vec<BadDocument> {
         at("unknown strain", "/model/elements/0/strain", json!("greene"), "did you mean `green`?"),
         at("unknown component", "/model/supports/pin/0", json!("u"), "known: `x`, `y`, `z`"),
         at("unknown method", "/analysis/method", json!("Auto"), "did you mean `auto`?"),
-        at("nodes as an array", "/model/nodes", json!([[0, 1]]), "found an array of 1; an object is expected"),
-        at("elements as an object", "/model/elements", json!({}), "found an object; an array is expected"),
+        at(
+            "nodes as an array",
+            "/model/nodes",
+            json!([[0, 1]]),
+            "found an array of 1; an object, `{...}`, is expected",
+        ),
+        at("elements as an object", "/model/elements", json!({}), "found an object; an array, `[...]`, is expected"),
         at("coordinate as a string", "/model/nodes/tip/0", json!("-1.5"), "found the string `-1.5`; a number"),
         at("coordinate null", "/model/nodes/tip/0", json!(null), "found null; a number"),
         at("coordinates as a number", "/model/nodes/tip", json!(1), "found the number `1`; an array"),
@@ -96,9 +103,14 @@ pub fn wrong_form() -> Vec<BadDocument> {
             .told("/model/obstacles/floor/radius"),
         ball_with("center as an object", json!({"center": {}}), "found an object; an array")
             .told("/model/obstacles/floor/center"),
-        at("displacements as an array", "/model/stages/0/displacements", json!([]), "an object is expected"),
-        at("motion as a number", "/model/stages/0/obstacle_motion", json!({"floor": 1}), "an array is expected")
-            .told("/model/stages/0/obstacle_motion/floor"),
+        at("displacements as an array", "/model/stages/0/displacements", json!([]), "an object, `{...}`, is expected"),
+        at(
+            "motion as a number",
+            "/model/stages/0/obstacle_motion",
+            json!({"floor": 1}),
+            "an array of numbers, as `[0, 1]`, is expected",
+        )
+        .told("/model/stages/0/obstacle_motion/floor"),
         at("unknown field of a stage", "/model/stages/0/displacement", json!({}), "did you mean `displacements`?"),
         at("unknown selection", "/analysis/selection", json!("max_potential_energy"), "did you mean `min_potential"),
         at("explore as a flag", "/analysis/explore", json!(true), "an exploration, an object, is expected"),

@@ -99,18 +99,20 @@ class Client:
         replace: Mapping[str, Sequence[Any]],
         *,
         combine: str = "grid",
+        responses: Optional[Mapping[str, Mapping[str, Any]]] = None,
         key: Optional[str] = None,
         **analysis: Any,
     ) -> "Sweep":
         """Queues a path for each combination of values at JSON pointers, such as
         `{"/model/contacts/0/friction": [0.1, 0.3]}`; a step `*` stands for every item. `combine` is `"grid"`, each value
-        with each, or `"list"`, the first of each, the second of each and so on."""
+        with each, or `"list"`, the first of each, the second of each and so on. `responses` are told of each path, such as
+        `{"tip at limit": {"value": "tip.x", "at": "first_limit"}}`."""
         request = as_request(model, analysis)
         for pointer, own in replace.items():
             if isinstance(own, (str, bytes, Mapping)) or not hasattr(own, "__iter__"):
                 raise TypeError(f"{pointer}: a list or an array of values is expected, found {own!r}")
         values = {pointer: plain(list(own) if not hasattr(own, "tolist") else own) for pointer, own in replace.items()}
-        request["sweep"] = {"replace": values, "combine": combine}
+        request["sweep"] = {"replace": values, "combine": combine, **({"responses": plain(responses)} if responses else {})}
         return Sweep(self, self.post("/v1/sweeps", request, key))
 
     def study(
@@ -341,7 +343,7 @@ class Sweep(Resource):
     folder = "sweeps"
 
     def rows(self) -> List[Dict[str, Any]]:
-        """The runs that have ended, in their order: `values`, `stop_reason`, `first_limit` and so on."""
+        """The runs that have ended, in their order: `values`, `stop_reason`, `first_limit`, `responses` and so on."""
         rows: List[Dict[str, Any]] = []
         after = ""
         while True:
@@ -352,8 +354,8 @@ class Sweep(Resource):
             after = f"?after={page['next_after']}"
 
     def to_frame(self) -> Any:
-        """The runs as a table of pandas, with a column for each parameter, and the first limit point of each path in
-        `limit.load_factor` and the other columns `limit.`; numbers are not-a-number where there is none."""
+        """The runs as a table of pandas, with a column for each parameter and each response, and the first limit point of each
+        path in `limit.load_factor` and the other columns `limit.`; numbers are not-a-number where there is none."""
         import pandas
 
         pointers = [parameter["pointer"] for parameter in self.refresh()["parameters"]]
@@ -363,7 +365,8 @@ class Sweep(Resource):
             limit = row.get("first_limit") or {}
             values = dict(zip(pointers, row["values"]))
             own = {name: row.get(name) for name in ("run", "job", "status", "stop_reason", "last_index")}
-            table.append({**own, **values, **{f"limit.{name}": limit.get(name) for name in limits}})
+            told = row.get("responses") or {}
+            table.append({**own, **values, **told, **{f"limit.{name}": limit.get(name) for name in limits}})
         frame = pandas.DataFrame(table)
         numbers = ["limit.load_factor", "limit.arc_length", "limit.increment"]
         return frame.astype({name: float for name in numbers if name in frame})

@@ -59,6 +59,9 @@ pub async fn picture(Path(name): Path<String>, headers: HeaderMap) -> Result<Res
 }
 
 fn page(name: &str, headers: &HeaderMap) -> Result<Response, Problem> {
-    let page = PAGES.get(name).ok_or_else(|| Problem::not_found(format_args!("chapter of that name")))?;
+    let page = PAGES.get(name).ok_or_else(|| {
+        let known: Vec<_> = CHAPTERS.iter().map(|chapter| chapter.name).collect();
+        Problem::not_found(format_args!("chapter of that name; there are {}", known.join(", ")))
+    })?;
     answer(PAGE, page.as_str(), headers)
 }

@@ -91,7 +91,7 @@ impl<F: Findings> FindingsSoFar<F> {
                     "the log of the service has details under the x-request-id of this answer",
                 ))
             }
-            Err(PlotError::NoErrors | PlotError::Empty | PlotError::NoLimitLoads) => {
+            Err(PlotError::NoErrors | PlotError::Empty | PlotError::NothingFound { .. }) => {
                 Err(Problem::not_found(format_args!("picture of {task} {id}: {}", F::NOT_DRAWN)))
             }
         }

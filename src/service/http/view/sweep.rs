@@ -1,6 +1,7 @@
 //! Sweeps as they are answered.
 
 use crate::model::VariationSummary;
+use crate::model::request::response::Response;
 use crate::model::request::sweep::{Combine, SweepParameter};
 use crate::service::http::view::submitted::Submitted;
 use crate::service::store::JobRecord;
@@ -28,6 +29,10 @@ pub struct Variation {
     #[schema(value_type = Vec<SweepParameter>)]
     parameters: Box<RawValue>,
     combine: Combine,
+    /// What is told of each path, by name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<IndexMap<String, Response>>)]
+    responses: Option<Box<RawValue>>,
 }
 
 /// A sweep as it is listed: what it varies is shortened.

@@ -9,7 +9,7 @@ use crate::service::jobs::solving::solver::Before;
 use crate::service::jobs::{Caller, Jobs, JobsError, Posted};
 use crate::service::metrics::Write;
 use crate::service::store::{JobRecord, Line, NewRun, NewSweep, Task};
-use crate::studies::sweeps::{Found, Row};
+use crate::studies::sweeps::{Found, ResponseFinder, Row};
 use serde_json::value::{RawValue, to_raw_value};
 
 impl Jobs {
@@ -144,5 +144,8 @@ fn prepare_run(context: &CheckContext<'_>, sweep: &Sweep, before: &mut Before, r
     context.limits.check(&request.model, max_increments).map_err(wrong)?;
     let plan = serde_json::to_string(&context.solver.plan_after(before, &request).map_err(wrong)?)?;
     let values = serde_json::to_string(&sweep.variation.values(run))?;
-    Ok(NewRun { name: request.model.name, request: text, plan, values, max_increments })
+    let responses = &sweep.variation.responses;
+    ResponseFinder::new(responses, &request).map_err(JobsError::Input)?;
+    let asked = (!responses.is_empty()).then(|| serde_json::to_string(responses)).transpose()?;
+    Ok(NewRun { name: request.model.name, request: text, plan, values, asked, max_increments })
 }

@@ -2,6 +2,7 @@
 
 pub mod batch;
 pub mod explore;
+pub mod responses;
 pub mod retention;
 pub mod worker;
 pub mod worker_pool;

@@ -9,6 +9,7 @@ use crate::service::jobs::solving::running;
 use crate::service::jobs::solving::solve::{self, Solve};
 use crate::service::jobs::solving::solve_output::SolveEnd;
 use crate::service::jobs::workers::batch::{self, Drained};
+use crate::service::jobs::workers::responses;
 use crate::service::metrics::Write;
 use crate::service::store::{Batch, Claim, Ending, Lease, LeaseAnswer, Status, StoreError, Task};
 use crate::studies::error_against_time;
@@ -110,7 +111,8 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
     let store = jobs.store.as_ref();
     match batch::drain(jobs, claim, &mut solve.sent, &cancel, shutdown).await {
         Drained::Complete(batch) => {
-            let ending = ending(solve.end.await.unwrap_or(SolveEnd::Silent));
+            let mut ending = ending(solve.end.await.unwrap_or(SolveEnd::Silent));
+            ending.responses = responses::of(jobs, claim, &batch.lines, shutdown).await?;
             end(jobs, claim, batch, ending, shutdown).await
         }
         Drained::ShuttingDown => {
@@ -135,6 +137,7 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
                 stop_reason: Some(reached.name().to_owned()),
                 report: None,
                 error: Some(jobs.settings.limits.sentence(reached)),
+                responses: responses::of(jobs, claim, &[], shutdown).await?,
             };
             let answer = end(jobs, claim, Batch::default(), ending, shutdown).await;
             stop(solve).await;
@@ -223,6 +226,7 @@ fn ending(end: SolveEnd) -> Ending {
             stop_reason: Some(MEMORY_LIMIT.to_owned()),
             report: None,
             error: Some(breach.to_string()),
+            responses: None,
         },
         SolveEnd::Refused(errors) => Ending::failed(format!("the stored request is not accepted: {errors}")),
         SolveEnd::Panicked(text) => Ending::failed(format!("the solver panicked: {text}")),
@@ -238,12 +242,19 @@ fn ending(end: SolveEnd) -> Ending {
 
 fn studied(report: &error_against_time::StudyReport) -> serde_json::Result<Ending> {
     let text = Some(serde_json::to_string(report)?);
-    let completed = Ending { status: Status::Completed, stop_reason: None, report: text.clone(), error: None };
+    let completed =
+        Ending { status: Status::Completed, stop_reason: None, report: text.clone(), error: None, responses: None };
     Ok(if report.complete { completed } else { cancelled(text) })
 }
 
 fn cancelled(report: Option<String>) -> Ending {
-    Ending { status: Status::Cancelled, stop_reason: Some("cancelled".to_owned()), report, error: None }
+    Ending {
+        status: Status::Cancelled,
+        stop_reason: Some("cancelled".to_owned()),
+        report,
+        error: None,
+        responses: None,
+    }
 }
 
 fn reported(judged: &JudgedReport) -> serde_json::Result<Ending> {
@@ -257,5 +268,6 @@ fn reported(judged: &JudgedReport) -> serde_json::Result<Ending> {
         stop_reason: Some(name_of(&judged.report.stop_reason)?),
         report: Some(serde_json::to_string(judged)?),
         error: None,
+        responses: None,
     })
 }

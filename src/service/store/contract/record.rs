@@ -116,6 +116,8 @@ pub struct NewRun {
     pub plan: String,
     /// A JSON array: the values of the varied parameters.
     pub values: String,
+    /// JSON: the responses that the sweep asks for; `None` if there are none.
+    pub asked: Option<String>,
     pub max_increments: u64,
 }
 
@@ -375,6 +377,8 @@ pub struct Claim {
     pub task: Task,
     pub request: String,
     pub max_increments: u64,
+    /// JSON: the responses that the sweep of the job asks for.
+    pub asked: Option<String>,
     /// Increments up to this one are stored already, from an earlier attempt.
     pub last: Option<Line>,
     /// The body of the last branch that an earlier attempt stored.
@@ -411,10 +415,12 @@ pub struct Ending {
     /// JSON.
     pub report: Option<String>,
     pub error: Option<String>,
+    /// JSON: the responses that the sweep of the job asks for, by name.
+    pub responses: Option<String>,
 }
 
 impl Ending {
     pub fn failed(error: impl Into<String>) -> Self {
-        Self { status: Status::Failed, stop_reason: None, report: None, error: Some(error.into()) }
+        Self { status: Status::Failed, stop_reason: None, report: None, error: Some(error.into()), responses: None }
     }
 }

@@ -17,6 +17,7 @@ const MIGRATIONS: &[MigrationFile] = migration_files![
     "0003_summaries",
     "0004_turns",
     "0005_counted_losses",
+    "0006_responses",
 ];
 
 /// In the format of `server_version_num`.

@@ -69,11 +69,11 @@ impl Dialect for Postgres {
 
     async fn insert_runs(connection: &mut PgConnection, runs: &Runs<'_>) -> sqlx::Result<()> {
         let insert = "INSERT INTO jobs (id, name, status, priority, request, plan, max_increments, max_attempts, \
-                      created_at, updated_at, task, owner, sweep, sweep_run, sweep_values, class, turn) \
+                      created_at, updated_at, task, owner, sweep, sweep_run, sweep_values, class, turn, asked) \
                       SELECT given.id, given.name, 'queued', $1, given.request, given.plan, given.increments, $2, \
-                      {now}, {now}, 'path', $3, $4, given.number, given.chosen, 2, $12 + given.number \
-                      FROM unnest($5::uuid[], $6::text[], $7::text[], $8::text[], $9::bigint[], $10::bigint[], $11::text[]) \
-                      AS given (id, name, request, plan, increments, number, chosen)";
+                      {now}, {now}, 'path', $3, $4, given.number, given.chosen, 2, $12 + given.number, given.asked \
+                      FROM unnest($5::uuid[], $6::text[], $7::text[], $8::text[], $9::bigint[], $10::bigint[], $11::text[], $13::text[]) \
+                      AS given (id, name, request, plan, increments, number, chosen, asked)";
         for (chunk, new) in (0_i64..).zip(runs.runs.chunks(ROWS_A_STATEMENT)) {
             let first = chunk * ROWS_A_STATEMENT as i64;
             sqlx::query(Self::said(insert))
@@ -89,6 +89,7 @@ impl Dialect for Postgres {
                 .bind((first..).take(new.len()).collect::<Vec<_>>())
                 .bind(new.iter().map(|run| run.values.as_str()).collect::<Vec<_>>())
                 .bind(i64::try_from(runs.turn).unwrap_or(i64::MAX / 2))
+                .bind(new.iter().map(|run| run.asked.as_deref()).collect::<Vec<_>>())
                 .execute(&mut *connection)
                 .await?;
         }

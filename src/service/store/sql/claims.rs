@@ -19,7 +19,7 @@ use std::time::Duration;
 macro_rules! claimed {
     () => {
         " RETURNING id, task, attempt, request, max_increments, last_index, parent, parent_increment, parent_direction, \
-         family, ran_ms, stored_bytes, CASE WHEN started_at > created_at THEN started_at - created_at ELSE 0 END AS waited, \
+         family, ran_ms, stored_bytes, asked, CASE WHEN started_at > created_at THEN started_at - created_at ELSE 0 END AS waited, \
          CAST(CASE WHEN started_at = {now} THEN 1 ELSE 0 END AS BIGINT) AS is_first \
          {unsynced}"
     };
@@ -83,6 +83,7 @@ pub(super) async fn claim<E: Engine>(engine: &E, worker: &str, lease: Duration, 
         task: rows::task(&row)?,
         request: rows::text(&row, "request")?,
         max_increments: rows::number(&row, "max_increments")?,
+        asked: row.text("asked")?,
         last,
         last_branch,
         checkpoint,

@@ -78,7 +78,7 @@ pub(super) async fn finish<E: Engine>(
         &mut transaction,
         concat!(
             "UPDATE jobs SET status = $4, stop_reason = $5, report = $6, error = $7, last_index = coalesce($8, last_index), \
-             stored_bytes = stored_bytes + $9, first_limit = coalesce(first_limit, $10), worker = NULL, lease_until = NULL, \
+             stored_bytes = stored_bytes + $9, first_limit = coalesce(first_limit, $10), responses = $11, worker = NULL, lease_until = NULL, \
              losses = 0, counted_losses = 0, ended_at = {now}, ",
             ran!(),
             held!(),
@@ -95,6 +95,7 @@ pub(super) async fn finish<E: Engine>(
             lines.last().map(|line| line.index),
             bytes(lines),
             &batch.first_limit,
+            &ending.responses,
         ],
     )
     .await?;

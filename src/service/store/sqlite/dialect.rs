@@ -61,8 +61,8 @@ impl Dialect for Sqlite {
 
     async fn insert_runs(connection: &mut SqliteConnection, runs: &Runs<'_>) -> sqlx::Result<()> {
         let insert = "INSERT INTO jobs (id, name, status, priority, request, plan, max_increments, max_attempts, created_at, updated_at, \
-             task, owner, sweep, sweep_run, sweep_values, class, turn) \
-             VALUES ($1, $2, 'queued', $3, $4, $5, $6, $7, {now}, {now}, 'path', $8, $9, $10, $11, 2, $12)";
+             task, owner, sweep, sweep_run, sweep_values, class, turn, asked) \
+             VALUES ($1, $2, 'queued', $3, $4, $5, $6, $7, {now}, {now}, 'path', $8, $9, $10, $11, 2, $12, $13)";
         for (number, run) in (0_u64..).zip(runs.runs) {
             Self::run(
                 connection,
@@ -80,6 +80,7 @@ impl Dialect for Sqlite {
                     number,
                     &run.values,
                     runs.turn + number,
+                    &run.asked,
                 ],
             )
             .await?;

@@ -38,6 +38,7 @@ const MIGRATIONS: &[MigrationFile] = migration_files![
     "0009_summaries",
     "0010_turns",
     "0011_counted_losses",
+    "0012_responses",
 ];
 
 const READERS: u32 = 4;
