@@ -12,7 +12,7 @@ use std::process::Command;
 
 /// The named points of the path that is drawn first.
 const NAMED: &str = "document.getElementById('path-plot').data?.[1]";
-const STATUS: &str = "document.getElementById('status')?.textContent";
+const STATUS: &str = "document.getElementById('status')?.dataset.status";
 
 fn numbers(values: &Value) -> Vec<f64> {
     values.as_array().expect("a list").iter().map(|value| value.as_f64().expect("a number")).collect()
@@ -130,8 +130,7 @@ async fn a_text_of_the_readers_own_is_named_so_and_brought_back_where_another_ta
     assert_eq!(browser.ask(TEXT).await, before);
     assert_eq!(browser.ask(chosen).await, "klarbring");
     // The model of a job, though a text of one's own stands in the form.
-    let again =
-        "[...document.querySelectorAll('#heading button')].find(({textContent}) => /^Run again/.test(textContent))";
+    let again = "[...document.querySelectorAll('#heading button')].find(({textContent}) => /^Duplicate and edit/.test(textContent))";
     browser.ask(&format!("document.querySelector('#lists a[href=\"/?jobs={id}\"]').click()")).await;
     for _ in 0..2 {
         browser.until(&format!("{again} !== undefined && !document.getElementById('job').hidden")).await;

@@ -5,6 +5,7 @@ mod common;
 
 mod jobs;
 mod large;
+mod lists;
 mod manual;
 mod pictures;
 mod states;

@@ -8,7 +8,7 @@ use crate::common::service::scene;
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 
-const STATUS: &str = "document.getElementById('status')?.textContent";
+const STATUS: &str = "document.getElementById('status')?.dataset.status";
 const PATH: &str = "document.getElementById('path-plot')";
 const MARK: &str = "document.getElementById('path-plot').data[2]";
 const STRUCTURE: &str = "document.getElementById('structure-plot')";
