@@ -29,9 +29,9 @@ async fn a_scene_is_run_and_its_limit_points_are_drawn_and_named() {
     assert!(plan.as_str().is_some_and(|plan| plan.contains("Left out: second-order cones")), "{plan}");
     browser.ask("document.getElementById('queue').click()").await;
     browser.until(&format!("{STATUS} === 'stopped'")).await;
-    browser.until(&format!("{NAMED}?.x.length === 2")).await;
+    browser.until(&format!("{NAMED}?.x.length === 3")).await;
     let drawn = browser.ask(NAMED).await;
-    assert_eq!(drawn["text"], json!(["A", "B"]));
+    assert_eq!(drawn["text"], json!(["A", "B", "C"]), "two limits and the end");
     let client = process::client();
     let jobs = process::get(&client, &service.url, "/v1/jobs").await.expect("a list");
     let id = jobs["jobs"][0]["id"].as_str().expect("an id").to_owned();
@@ -50,7 +50,7 @@ async fn a_scene_is_run_and_its_limit_points_are_drawn_and_named() {
     let address = browser.page.current_url().await.expect("an address").to_string();
     assert!(address.contains(&id), "{address}");
     browser.page.goto(&address).await.expect("a page");
-    browser.until(&format!("{NAMED}?.x.length === 2")).await;
+    browser.until(&format!("{NAMED}?.x.length === 3")).await;
     browser.until("document.querySelector('#structure-plot .main-svg') !== null").await;
     browser.close(&service.url, &[]).await;
 }

@@ -7,6 +7,7 @@ mod jobs;
 mod large;
 mod lists;
 mod manual;
+mod paths;
 mod pictures;
 mod states;
 mod views;

@@ -12,6 +12,7 @@ import { PathPlot } from "./path-plot.js";
 import { plotlyLoaded } from "./plotly-loaded.js";
 import { change, state } from "./state.js";
 import { StructurePlot } from "./structure-plot.js";
+import { sweepOf } from "./sweep-colours.js";
 import { isGoingOn } from "./words.js";
 
 /** Milliseconds between pictures of the structure of a path that grows: the path itself is drawn first. */
@@ -35,6 +36,7 @@ export class JobView {
       hovered: (id, index) => { if (id === state().jobs[0]) this.structure.choose(index); },
       left: () => this.structure.choose(state().at),
       axes: (axes) => change(axes),
+      failed: (words) => told.said(words),
     });
     this.structure = new StructurePlot(byId("structure"), {
       chosen, pointedAt: (yes) => this.pathPlot.pointAt(yes), turned: (turn) => change({ turn }),
@@ -95,7 +97,7 @@ export class JobView {
     return this.draw();
   }
 
-  /** The service can be reached again: fetches what is missing. */
+  /** The service can be reached again. */
   async recover() {
     if (!this.isWanted) return;
     this.hold();
@@ -199,8 +201,10 @@ export class JobView {
     const shown = this.paths();
     const axes = axesOf(shown, state());
     this.heading();
+    const names = [axes.abscissa, ...axes.ordinates];
     try {
-      await Promise.all([plotlyLoaded(), ...shown.map((path) => path.need([axes.abscissa, axes.ordinate]))]);
+      const [sweep] = await Promise.all([sweepOf(shown), plotlyLoaded(), ...shown.map((path) => path.need(names))]);
+      this.pathPlot.runsOf(sweep);
     } catch (problem) {
       if (!isGivenUp(problem)) this.told.said(problem.message, () => this.view());
       return;

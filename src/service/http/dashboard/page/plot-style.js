@@ -10,7 +10,8 @@ const DASHES = [["solid", []], ["dash", [6, 3]], ["dot", [2, 2]], ["dashdot", [6
 
 export const colourOf = (place) => COLOURS[place % COLOURS.length];
 /** The dash of a line, which changes when the colours repeat. */
-export const dashOf = (place) => DASHES[Math.floor(place / COLOURS.length) % DASHES.length][0];
+export const dashAt = (place) => DASHES[place % DASHES.length][0];
+export const dashOf = (place) => dashAt(Math.floor(place / COLOURS.length));
 
 /** The style of a swatch with that colour and dash. */
 export function dashedSwatch(colour, dash) {
@@ -24,6 +25,12 @@ export function dashedSwatch(colour, dash) {
   return `background:${stops.length ? `repeating-linear-gradient(to right, ${stops.join(", ")})` : colour}`;
 }
 
+/** The colours and dashes of the stages of a single path are those of the picture of `arcslip solve --plot`, in turn. */
+const STAGES = 4;
+export const stageColour = (stage) => fromSheet(`--stage-${stage % STAGES}`);
+export const stageDash = (stage) => (stage % 2 ? "dash" : "solid");
+
+export const isDark = () => dark.matches;
 export const onThemeChange = (listener) => dark.addEventListener("change", listener);
 
 /** A colour of the style sheet. */

@@ -12,7 +12,7 @@ import { plainWords, short, verbatim } from "./words.js";
 /** Milliseconds between drawings while rows come in. */
 const AGAIN = 500;
 /** Paths that are drawn over one another at the most. */
-const OVERLAID = 12;
+const OVERLAID = 40;
 /** Runs that stand in the table; the others are in the files. */
 const LISTED = 500;
 

@@ -29,14 +29,14 @@ function row(task, { isChosen, before, link, told, done, most, kind }) {
     isGoingOn(task) ? element("progress", { max: most, value: done, "aria-label": "progress" }) : null);
 }
 
-/** A job; `words`: what it is called where that is not its name. */
-function jobRow(job, words = nameOf(job)) {
+/** A job; `words`: what it is called under the heading of its sweep. */
+function jobRow(job, words = null) {
   const { jobs: shown, study, sweep } = state();
   const place = study || sweep ? -1 : shown.indexOf(job.id);
   const { increments, max_increments: most } = job.progress;
   const others = shown.filter((id) => id !== job.id);
   const draw = element("input", {
-    type: "checkbox", checked: place >= 0, "data-key": `draw ${job.id}`, "aria-label": `draw ${words} with the others`,
+    type: "checkbox", checked: place >= 0, "data-key": `draw ${job.id}`, "aria-label": `draw ${words ?? nameOf(job)} with the others`,
     title: "draw with the others",
     onchange: (event) => change({
       jobs: event.target.checked ? [...others, job.id] : others, run: false, study: null, sweep: null, ...(place === 0 ? { at: null } : {}),
@@ -44,9 +44,9 @@ function jobRow(job, words = nameOf(job)) {
     }),
   });
   const link = within(addressOfJob(job.id), () => openJob(job.id),
-    { "data-key": `open ${job.id}`, "aria-current": place === 0 ? "true" : null, title: `job ${job.id}` }, words);
+    { "data-key": `open ${job.id}`, "aria-current": place === 0 ? "true" : null, title: `job ${job.id}` }, words ?? nameOf(job));
   const branch = job.parent ? `, branch at increment ${job.parent.increment}, direction ${job.parent.direction}` : "";
-  const told = `${increments} increments, ${ago(job.created_at)}${branch}${job.sweep ? `, run ${job.sweep.run} of a sweep` : ""}`;
+  const told = `${increments} increments, ${ago(job.created_at)}${branch}${words ? `, run ${job.sweep.run}` : ""}`;
   return row(job, {
     isChosen: place === 0, before: [draw, thumbnail(job)], link, told, done: increments, most, kind: "pictured",
   });
