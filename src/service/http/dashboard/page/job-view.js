@@ -223,7 +223,7 @@ export class JobView {
     this.diagnostics.show(first);
   }
 
-  /** Draws the exact path over the computed one once this is complete; drawing does not wait for it. */
+  /** Draws the exact path under the computed one once this is complete; drawing does not wait for it. */
   async layExact(path) {
     if (isGoingOn(path.job)) return;
     const before = path.exact;

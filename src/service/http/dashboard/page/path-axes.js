@@ -8,6 +8,8 @@ import { ordinatesIn, quantityWords, scaleOf } from "./quantities.js";
 const USUAL = "load_factor";
 /** The most quantities that are drawn together. */
 export const MOST_ORDINATES = 6;
+/** Characters of a label in one line. */
+const LINE = 40;
 
 /** The axes for these paths: the chosen ones, if any path has them, or else those of the first path, in which case `refused` is
  *  set. */
@@ -32,7 +34,10 @@ export const isOnFirstAxis = (name, ordinates) => scaleOf(name) === scaleOf(ordi
 
 /** The label of an axis with these quantities. */
 export function axisWords(names, request) {
-  return names.length > 2 ? `${quantityWords(names[0], request)} and ${names.length - 1} more` : names.map((name) => quantityWords(name, request)).join(", ");
+  if (names.length > 2) return `${quantityWords(names[0], request)} and ${names.length - 1} more`;
+  const words = names.map((name) => quantityWords(name, request));
+  const line = words.join(", ");
+  return line.length > LINE ? words.join(",\n") : line;
 }
 
 /** The controls; `chosen({abscissa} or {ordinate})` is told of a change. */

@@ -1,9 +1,7 @@
-// The plot of paths as a file: PNG and SVG with a legend inside, and the drawn points as CSV.
+// The plot of paths as a file: PNG and SVG with a legend inside, and the drawn points as CSV. Loaded when a file is asked for.
 
-import { button, element } from "./dom.js";
-import { save } from "./downloads.js";
 import { curveNames, keyRows, namedWords } from "./path-legend.js";
-import { fromSheet } from "./plot-style.js";
+import { EXACT, fromSheet } from "./plot-style.js";
 import { named } from "./points.js";
 import { nameOf, verbatim } from "./words.js";
 
@@ -13,25 +11,15 @@ const SCALE = 2;
 /** The most points that the legend of a picture lists. */
 const LISTED = 20;
 
-/** The buttons; `plot()` answers `{place, curves, runs}`, or null before something is drawn. Calls `failed(words)`. */
-export function exportButtons(plot, failed) {
-  const doing = (what) => async () => {
-    const found = plot();
-    if (!found) return;
-    try {
-      await what(found);
-    } catch (problem) {
-      failed(`The file cannot be made: ${problem.message}`);
-    }
-  };
-  const picture = (format) => doing(async (found) => {
-    const address = await Plotly.toImage(figure(found), { format, ...SIZE, scale: format === "png" ? SCALE : 1 });
-    save(blobOf(address), `${fileName(found)}.${format}`);
-  });
-  return element("div", { class: "actions", role: "group", "aria-label": "save the plot" },
-    button("Save as PNG", picture("png"), { id: "path-png" }), button("Save as SVG", picture("svg"), { id: "path-svg" }),
-    button("Save the points (CSV)", doing((found) =>
-      save(new Blob([pointsTable(found)], { type: "text/csv" }), `${fileName(found)}.csv`)), { id: "path-points" }));
+/** A picture of `{place, curves, runs}` as `[blob, name]`; `format`: png or svg. */
+export async function pictureFile(plot, format) {
+  const address = await Plotly.toImage(figure(plot), { format, ...SIZE, scale: format === "png" ? SCALE : 1 });
+  return [blobOf(address), `${fileName(plot)}.${format}`];
+}
+
+/** The drawn points as `[blob, name]`. */
+export function pointsFile(plot) {
+  return [new Blob([pointsTable(plot)], { type: "text/csv" }), `${fileName(plot)}.csv`];
 }
 
 const fileName = ({ curves }) => `path-${curves[0].path.id}`;
@@ -51,7 +39,7 @@ function figure({ place, curves, runs }) {
   const title = [...new Set(curves.map(({ path }) => nameOf(path.job)))].join(", ");
   const mark = place.data.findIndex(({ name }) => name === "chosen increment");
   return {
-    data: [...place.data.filter((_, which) => which !== mark), ...legendTraces(curves, runs)],
+    data: [...place.data.filter((_, which) => which !== mark), ...legendTraces(curves, runs, place.data.some(({ name }) => name === "exact"))],
     layout: {
       ...place.layout, ...SIZE, autosize: false, paper_bgcolor: ground, plot_bgcolor: ground, showlegend: true,
       title: { text: verbatim(title), x: 0.02 }, margin: { l: 70, r: 20, t: runs?.isScale ? 110 : 60, b: 60 },
@@ -61,9 +49,10 @@ function figure({ place, curves, runs }) {
 }
 
 /** Traces without points, for the legend alone. */
-function legendTraces(curves, runs) {
+function legendTraces(curves, runs, hasExact) {
   const row = (name, more) => ({ x: [null], y: [null], type: "scatter", name: verbatim(name), showlegend: true, ...more });
   const names = curves.length > 1 ? curveNames(curves, runs) : [];
+  const exact = hasExact ? [row("exact", { mode: "lines", opacity: EXACT.opacity, line: { color: fromSheet("--text"), width: EXACT.width } })] : [];
   const lines = names.map((name, which) => row(name, { mode: "lines", line: { color: curves[which].colour, dash: curves[which].dash, width: 2 } }));
   const key = keyRows(curves).map(({ words, colour, filling, dash, symbol }) => row(words.split(":")[0], symbol
     ? { mode: "markers", marker: { color: filling, symbol, size: 9, line: { color: colour, width: 1.5 } } }
@@ -71,7 +60,7 @@ function legendTraces(curves, runs) {
   const { path } = curves[0];
   const events = curves.length > 1 ? [] : named(path).filter(({ name }) => name).slice(0, LISTED)
     .map((point) => row(`${point.name}: ${namedWords(path, point)}`, { mode: "markers", marker: { color: "rgba(0, 0, 0, 0)" } }));
-  return [...lines, ...key, ...events];
+  return [...lines, ...exact, ...key, ...events];
 }
 
 /** A row for each point of each path: the job, its increment and stage, and the drawn quantities. */

@@ -4,7 +4,7 @@
 import { element, fill } from "./dom.js";
 import { MARKS } from "./path-curve.js";
 import { pathNames } from "./path-names.js";
-import { dashedSwatch, fromSheet, stageColour, stageDash } from "./plot-style.js";
+import { dashedSwatch, EXACT, fromSheet, stageColour, stageDash } from "./plot-style.js";
 import { branchingPlaces, named } from "./points.js";
 import { quantityWords } from "./quantities.js";
 import { kindWords, pointWords, short } from "./words.js";
@@ -24,7 +24,7 @@ export function curveNames(curves, runs) {
   ].filter(Boolean).join(": "));
 }
 
-/** `exact`: the path in closed form that is laid over, or null. */
+/** `exact`: the path in closed form that is drawn under them, or null. */
 export function pathLegend(place, curves, runs, exact) {
   const names = curves.length > 1 ? curveNames(curves, runs) : [];
   fill(place, names.map((name, which) => {
@@ -34,7 +34,7 @@ export function pathLegend(place, curves, runs, exact) {
       element("span", { class: "swatch long line", style: dashedSwatch(colour, dash) }),
       name, without ? element("span", { class: "quiet" }, ` (not drawn: it has no ${quantityWords(without)})`) : null);
   }),
-  exact ? element("li", { title: exact.formula }, element("span", { class: "swatch dashed" }), `exact (${exact.name})`) : null);
+  exact ? element("li", { title: exact.formula }, element("span", { class: "swatch long", style: `background:var(--text);opacity:${EXACT.opacity}` }), `exact (${exact.name})`) : null);
 }
 
 /** The rows of the key, `[{words, colour, dash} or {words, colour, filling, sign, symbol}]`. */

@@ -2,9 +2,9 @@
 // happens, the chosen increment.
 
 import { choice, element, fill } from "./dom.js";
+import { plotButtons } from "./downloads.js";
 import { axesControls, axisWords, isOnFirstAxis } from "./path-axes.js";
 import { Curve } from "./path-curve.js";
-import { exportButtons } from "./path-export.js";
 import { lineKey, namedPoints, pathLegend } from "./path-legend.js";
 import { PathLooks } from "./path-names.js";
 import { exactTrace, pathWords } from "./path-words.js";
@@ -33,7 +33,7 @@ export class PathPlot {
     this.key = element("ul", { class: "key", id: "path-key", "aria-label": "lines and marks" });
     this.words = element("p", { class: "quiet", id: "path-words" });
     this.list = element("ol", { class: "named", "aria-label": "named points" });
-    const exports = exportButtons(() => (this.curves.length ? { place: this.place, curves: this.curves, runs: this.runs } : null), told.failed);
+    const exports = plotButtons(() => (this.curves.length ? { place: this.place, curves: this.curves, runs: this.runs } : null), told.failed);
     fill(panel, element("h2", {}, "Path"), this.choices, this.colouring, this.place, this.legend, this.key, this.words, exports, this.list);
     this.paths = [];
     this.curves = [];

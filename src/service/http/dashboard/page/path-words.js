@@ -1,6 +1,6 @@
-// Sentences below the plot of paths on what it does not show, and the exact path that is laid over it.
+// Sentences below the plot of paths on what it does not show, and the exact path under it.
 
-import { fromSheet } from "./plot-style.js";
+import { EXACT, fromSheet } from "./plot-style.js";
 import { notRecordedWords } from "./quantity-groups.js";
 import { ofDisplacement, quantityWords } from "./quantities.js";
 import { stagesOf } from "./path-legend.js";
@@ -14,7 +14,7 @@ export function pathWords({ curves, sweep, runs, marked, lettered }) {
   return [
     isEmpty ? "No increment is stored yet: there is nothing to draw." : null,
     lacking ? `Nothing is drawn: no increment has a value of ${quantityWords(lacking, path.request)}.` : null,
-    curves.length > 1 && curves.some((curve) => stagesOf(curve.path).length > 1) ? "A line is interrupted where a stage begins." : null,
+    curves.length > 1 && curves.some((curve) => stagesOf(curve.path).length > 1) ? "A line is interrupted where a stage begins; a square is where one ends." : null,
     curves.length > lettered ? `With more than ${lettered} curves points have no letters; they are named below, of the first path.` : null,
     many > marked ? `Of more than ${marked} increments none has a dot.` : null,
     sweep?.problem ? `The sweep of these runs cannot be read, and so it gives no colours: ${sweep.problem}` : null,
@@ -23,7 +23,7 @@ export function pathWords({ curves, sweep, runs, marked, lettered }) {
   ].filter(Boolean).join(" ");
 }
 
-/** The exact solution of the first path, drawn over all of them; null where there is none of what is drawn. */
+/** The exact solution of the first path, drawn as a pale band under all of them; null where there is none of what is drawn. */
 export function exactTrace(curves) {
   const found = curves[0]?.path.exact?.path;
   const of = ofDisplacement(curves[0]?.abscissa);
@@ -35,7 +35,7 @@ export function exactTrace(curves) {
     y.push(...stage.load_factor, null);
   }
   return {
-    x, y, type: "scatter", mode: "lines", name: "exact", hoverinfo: "skip", yaxis: curve.yaxis, zorder: 3, showlegend: false,
-    line: { color: fromSheet("--text"), width: 1, dash: "dash" },
+    x, y, type: "scatter", mode: "lines", name: "exact", hoverinfo: "skip", yaxis: curve.yaxis, zorder: 0, showlegend: false,
+    opacity: EXACT.opacity, line: { color: fromSheet("--text"), width: EXACT.width },
   };
 }

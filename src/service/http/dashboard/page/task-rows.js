@@ -5,11 +5,12 @@ import {
   addressOfJob, addressOfStudy, addressOfSweep, change, openJob, openStudy, openSweep, state,
 } from "./state.js";
 import { runWords } from "./sweep-values.js";
-import { thumbnail } from "./thumbnails.js";
 import { ago, isGoingOn, nameOf, statusOf } from "./words.js";
 
 /** Sweep id to whether the reader has opened or closed the list of its runs. */
 const openedByHand = new Map();
+/** Loaded after all that a first view needs. */
+const thumbnails = import("./thumbnails.js");
 
 /** A link within the page; with a key held it opens as links do. */
 function within(address, open, attributes, words) {
@@ -47,8 +48,11 @@ function jobRow(job, words = null) {
     { "data-key": `open ${job.id}`, "aria-current": place === 0 ? "true" : null, title: `job ${job.id}` }, words ?? nameOf(job));
   const branch = job.parent ? `, branch at increment ${job.parent.increment}, direction ${job.parent.direction}` : "";
   const told = `${increments} increments, ${ago(job.created_at)}${branch}${words ? `, run ${job.sweep.run}` : ""}`;
+  const picture = element("span", { class: "thumbnail-place" });
+  // A row without its picture is still of use.
+  thumbnails.then(({ thumbnail }) => picture.append(thumbnail(job)), () => {});
   return row(job, {
-    isChosen: place === 0, before: [draw, thumbnail(job)], link, told, done: increments, most, kind: "pictured",
+    isChosen: place === 0, before: [draw, picture], link, told, done: increments, most, kind: "pictured",
   });
 }
 
