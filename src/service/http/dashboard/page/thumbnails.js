@@ -6,10 +6,10 @@ import { byId, element } from "./dom.js";
 
 const NAMESPACE = "http://www.w3.org/2000/svg";
 const [WIDTH, HEIGHT, RIM] = [44, 28, 2];
-/** Increments that are read for a picture. */
-const MOST = 500;
+/** Increments that are read for a picture, and points that are drawn of them. */
+const [MOST, DRAWN] = [10_000, 200];
 /** Unknowns times increments up to which the service finds the columns at once. */
-const LARGEST = 500_000;
+const LARGEST = 100_000;
 /** Milliseconds before the first picture, and between pictures. */
 const [FIRST, PAUSE] = [1200, 60];
 
@@ -41,7 +41,7 @@ export function thumbnail({ id, status, progress, plan }) {
   if (known?.key === key) return picture;
   const size = (plan?.unknowns ?? 0) * Math.min(MOST, progress.increments);
   if (progress.last_index === null) held.set(id, { key, points: [], words: "no increment yet" });
-  else if (size > LARGEST) held.set(id, { key, points: [], words: "no picture: the increments are large" });
+  else if (size > LARGEST) held.set(id, { key, points: [], words: "no picture: the path is too large for one" });
   if (held.get(id)?.key === key) draw(picture, held.get(id));
   else inSight.observe(picture);
   return picture;
@@ -70,7 +70,7 @@ async function read(id) {
     const { arc_length: x, load_factor: y } = page.columns;
     const isPart = page.index.length === MOST;
     return {
-      points: x.map((value, place) => [value, y[place]]),
+      points: thinned(x.map((value, place) => [value, y[place]])),
       words: `load factor over arc length${isPart ? `, the first ${MOST} increments` : ""}`,
     };
   } catch (problem) {
@@ -78,11 +78,22 @@ async function read(id) {
   }
 }
 
+function thinned(points) {
+  const every = Math.ceil(points.length / DRAWN);
+  return points.filter((_, place) => place % every === 0 || place === points.length - 1);
+}
+
 function draw(picture, { points, words }) {
   const title = document.createElementNS(NAMESPACE, "title");
   title.textContent = words;
-  const line = document.createElementNS(NAMESPACE, "polyline");
-  line.setAttribute("points", placed(points));
+  const line = document.createElementNS(NAMESPACE, points.length > 0 ? "polyline" : "text");
+  if (points.length > 0) {
+    line.setAttribute("points", placed(points));
+  } else {
+    line.setAttribute("x", WIDTH / 2);
+    line.setAttribute("y", HEIGHT / 2);
+    line.textContent = "–";
+  }
   picture.replaceChildren(title, line);
 }
 
