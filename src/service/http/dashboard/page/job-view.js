@@ -4,7 +4,7 @@
 import { isGivenUp } from "./api.js";
 import { Diagnostics } from "./diagnostics.js";
 import { Directions } from "./directions.js";
-import { atMostEvery, byId, onceAFrame } from "./dom.js";
+import { atMostEvery, byId, frame, onceAFrame } from "./dom.js";
 import { pathOnItsWay } from "./early.js";
 import { JobHeading } from "./job-heading.js";
 import { axesOf } from "./path-axes.js";
@@ -201,10 +201,9 @@ export class JobView {
     const shown = this.paths();
     const axes = axesOf(shown, state());
     this.heading();
-    const names = [axes.abscissa, ...axes.ordinates];
+    const read = shown.map((path) => path.need([axes.abscissa, ...axes.ordinates]));
     try {
-      const [sweep] = await Promise.all([sweepOf(shown), plotlyLoaded(), ...shown.map((path) => path.need(names))]);
-      this.pathPlot.runsOf(sweep);
+      this.pathPlot.sweep = (await Promise.all([sweepOf(shown), plotlyLoaded(), ...read]))[0];
     } catch (problem) {
       if (!isGivenUp(problem)) this.told.said(problem.message, () => this.view());
       return;
@@ -241,8 +240,6 @@ export class JobView {
     if (this.first && this.isWanted) this.top.show(this.first, state().jobs.length - 1);
   }
 }
-
-const frame = () => new Promise((resume) => requestAnimationFrame(() => setTimeout(resume)));
 
 function measureFirstPath() {
   if (performance.getEntriesByName(FIRST_PATH).length > 0) return;

@@ -8,8 +8,8 @@ import { pointWords, verbatim } from "./words.js";
 /** Colour, symbol and filling of the kinds of points, as in the picture of `arcslip solve --plot`; a colour is a name in the style
  *  sheet. */
 export const MARKS = {
-  smooth_limit: ["--limit", "circle", "--limit"], nonsmooth_limit: ["--nonsmooth", "diamond", "--nonsmooth"], contact_change: ["--text", "circle", "--panel"],
-  end: ["--text", "square", "--text"], bifurcation: ["--bifurcation", "diamond", "--panel"],
+  smooth_limit: ["--limit", "circle", "--limit"], nonsmooth_limit: ["--nonsmooth", "diamond", "--nonsmooth"],
+  contact_change: ["--text", "circle", "--panel"], end: ["--text", "square", "--text"], bifurcation: ["--bifurcation", "diamond", "--panel"],
 };
 
 export class Curve {
@@ -21,16 +21,18 @@ export class Curve {
     this.colour = look.colour;
     this.dash = look.dash;
     this.yaxis = isFirstAxis ? "y" : "y2";
+    this.xs = path.columns.get(abscissa) ?? [];
+    this.ys = path.columns.get(ordinate) ?? [];
     this.strands = new Strands(this, isAlone);
   }
 
   x(place) {
-    return this.path.columns.get(this.abscissa)?.[place] ?? null;
+    return this.xs[place] ?? null;
   }
 
   /** A point without an abscissa is left out and does not affect the range of the ordinate. */
   y(place) {
-    return this.x(place) === null ? null : this.path.columns.get(this.ordinate)?.[place] ?? null;
+    return this.x(place) === null ? null : this.ys[place] ?? null;
   }
 
   /** The column of which the path has no values, or null. */
@@ -74,7 +76,10 @@ export class Curve {
       hovertext: found.map((point) =>
         `${point.name ? `${point.name}: ` : ""}${pointWords(point)}${point.event ? `, ${verbatim(point.event)}` : ""}`),
       hovertemplate: "%{hovertext}<br>%{x:.5g}, %{y:.5g}<extra></extra>",
-      marker: { size: 9, color: colours(2), line: { color: colours(0), width: 1.5 }, symbol: found.map(({ kind }) => MARKS[kind][1]) },
+      marker: {
+        size: 9, color: colours(2), line: { color: colours(0), width: 1.5 },
+        symbol: found.map(({ kind }) => MARKS[kind][1]),
+      },
       textfont: { color: fromSheet("--text"), size: 14 }, cliponaxis: false,
     };
   }

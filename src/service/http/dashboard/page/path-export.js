@@ -37,9 +37,9 @@ function blobOf(address) {
 function figure({ place, curves, runs }) {
   const ground = fromSheet("--panel");
   const title = [...new Set(curves.map(({ path }) => nameOf(path.job)))].join(", ");
-  const mark = place.data.findIndex(({ name }) => name === "chosen increment");
+  const drawn = place.data.filter(({ name }) => name !== "chosen increment");
   return {
-    data: [...place.data.filter((_, which) => which !== mark), ...legendTraces(curves, runs, place.data.some(({ name }) => name === "exact"))],
+    data: [...drawn, ...legendTraces(curves, runs, drawn.some(({ name }) => name === "exact"))],
     layout: {
       ...place.layout, ...SIZE, autosize: false, paper_bgcolor: ground, plot_bgcolor: ground, showlegend: true,
       title: { text: verbatim(title), x: 0.02 }, margin: { l: 70, r: 20, t: runs?.isScale ? 110 : 60, b: 60 },
@@ -52,8 +52,12 @@ function figure({ place, curves, runs }) {
 function legendTraces(curves, runs, hasExact) {
   const row = (name, more) => ({ x: [null], y: [null], type: "scatter", name: verbatim(name), showlegend: true, ...more });
   const names = curves.length > 1 ? curveNames(curves, runs) : [];
-  const exact = hasExact ? [row("exact", { mode: "lines", opacity: EXACT.opacity, line: { color: fromSheet("--text"), width: EXACT.width } })] : [];
-  const lines = names.map((name, which) => row(name, { mode: "lines", line: { color: curves[which].colour, dash: curves[which].dash, width: 2 } }));
+  const band = { mode: "lines", opacity: EXACT.opacity, line: { color: fromSheet("--text"), width: EXACT.width } };
+  const exact = hasExact ? [row("exact", band)] : [];
+  const lines = names.map((name, which) => {
+    const { colour, dash } = curves[which];
+    return row(name, { mode: "lines", line: { color: colour, dash, width: 2 } });
+  });
   const key = keyRows(curves).map(({ words, colour, filling, dash, symbol }) => row(words.split(":")[0], symbol
     ? { mode: "markers", marker: { color: filling, symbol, size: 9, line: { color: colour, width: 1.5 } } }
     : { mode: "lines", line: { color: colour, dash, width: 2 } }));

@@ -20,7 +20,8 @@ export function curveNames(curves, runs) {
   const isOne = curves.every(({ ordinate }) => ordinate === curves[0].ordinate);
   const ofPath = new Map(paths.length > 1 ? pathNames(paths, runs).map((name, place) => [paths[place], name]) : []);
   return curves.map(({ path, ordinate, yaxis }) => [
-    ofPath.get(path), isOne ? null : `${quantityWords(ordinate, path.request)}${yaxis === "y2" ? " (axis on the right)" : ""}`,
+    ofPath.get(path),
+    isOne ? null : `${quantityWords(ordinate, path.request)}${yaxis === "y2" ? " (axis on the right)" : ""}`,
   ].filter(Boolean).join(": "));
 }
 
@@ -43,8 +44,13 @@ export function keyRows(curves) {
   const isAlone = curves.length === 1;
   const rows = isAlone ? stageRows(curves[0]) : [];
   const ink = fromSheet("--text");
-  if (paths.some(falls)) rows.push({ words: "the load falls: a load that only grows leaves the path here", colour: isAlone ? curves[0].colour : ink, dash: "dot" });
-  if (paths.some((path) => branchingPlaces(path).size > 0)) rows.push({ words: "bifurcation points: more than one way on", colour: fromSheet("--bifurcation"), dash: "solid" });
+  if (paths.some(falls)) {
+    const words = "the load falls: a load that only grows leaves the path here";
+    rows.push({ words, colour: isAlone ? curves[0].colour : ink, dash: "dot" });
+  }
+  if (paths.some((path) => branchingPlaces(path).size > 0)) {
+    rows.push({ words: "bifurcation points: more than one way on", colour: fromSheet("--bifurcation"), dash: "solid" });
+  }
   const kinds = new Set(paths.flatMap((path) => named(path).map(({ kind }) => kind)));
   for (const [kind, [colour, symbol, filling]] of Object.entries(MARKS)) {
     if (!kinds.has(kind)) continue;

@@ -33,10 +33,13 @@ export class PathPlot {
     this.key = element("ul", { class: "key", id: "path-key", "aria-label": "lines and marks" });
     this.words = element("p", { class: "quiet", id: "path-words" });
     this.list = element("ol", { class: "named", "aria-label": "named points" });
-    const exports = plotButtons(() => (this.curves.length ? { place: this.place, curves: this.curves, runs: this.runs } : null), told.failed);
-    fill(panel, element("h2", {}, "Path"), this.choices, this.colouring, this.place, this.legend, this.key, this.words, exports, this.list);
+    const drawn = () => (this.curves.length ? { place: this.place, curves: this.curves, runs: this.runs } : null);
+    fill(panel, element("h2", {}, "Path"), this.choices, this.colouring, this.place, this.legend, this.key, this.words,
+      plotButtons(drawn, told.failed), this.list);
     this.paths = [];
     this.curves = [];
+    /** The sweep of which all paths are runs, or null. */
+    this.sweep = null;
     this.looks = new PathLooks();
     this.revision = 0;
     this.drawn = [];
@@ -50,11 +53,6 @@ export class PathPlot {
     this.curves = [];
     for (const place of [this.legend, this.key, this.list, this.words]) fill(place);
     await Plotly.react(this.place, [], layout({ xaxis: axis(""), yaxis: axis("") }), CONFIGURATION);
-  }
-
-  /** The sweep of which all paths are runs, or null. */
-  runsOf(sweep) {
-    this.sweep = sweep;
   }
 
   /** Draws everything anew; `axes`: names of the abscissa and of the ordinates. */
@@ -75,7 +73,9 @@ export class PathPlot {
     if (exact) traces.push(exact);
     this.strandPlaces = this.curves.map((curve, which) => {
       const places = new Map();
-      for (const [key, piece] of curve.strands.grow(0)) places.set(key, traces.push(curve.strands.trace(key, piece, this.isMarked[which])) - 1);
+      for (const [key, piece] of curve.strands.grow(0)) {
+        places.set(key, traces.push(curve.strands.trace(key, piece, this.isMarked[which])) - 1);
+      }
       return places;
     });
     if (this.runs?.isScale) traces.push(this.runs.bar());

@@ -14,8 +14,10 @@ export function pathWords({ curves, sweep, runs, marked, lettered }) {
   return [
     isEmpty ? "No increment is stored yet: there is nothing to draw." : null,
     lacking ? `Nothing is drawn: no increment has a value of ${quantityWords(lacking, path.request)}.` : null,
-    curves.length > 1 && curves.some((curve) => stagesOf(curve.path).length > 1) ? "A line is interrupted where a stage begins; a square is where one ends." : null,
-    curves.length > lettered ? `With more than ${lettered} curves points have no letters; they are named below, of the first path.` : null,
+    curves.length > 1 && curves.some((curve) => stagesOf(curve.path).length > 1)
+      ? "A line is interrupted where a stage begins; a square is where one ends." : null,
+    curves.length > lettered
+      ? `With more than ${lettered} curves points have no letters; they are named below, of the first path.` : null,
     many > marked ? `Of more than ${marked} increments none has a dot.` : null,
     sweep?.problem ? `The sweep of these runs cannot be read, and so it gives no colours: ${sweep.problem}` : null,
     runs && !runs.isScale ? "What differs in these runs is no number, and so the colours have no scale." : null,

@@ -22,22 +22,30 @@ export function quantityGroups(request) {
   return [
     { title: "Path", parts: plain(["load_factor", "arc_length", "step", "index"]) },
     { title: "Energies", parts: plain(Object.keys(PLAIN).filter((name) => name.startsWith("/energy/"))) },
-    { title: "Displacements", of: "displacements", parts: axes("", ""), keys: recorded.displacements, names: recorded.displacements },
-    { title: "Reactions of supports", of: "supports", parts: axes("", "reaction "), keys: recorded.supports, names: recorded.supports },
+    { title: "Displacements", of: "displacements", parts: axes("", ""), ...namedBy(recorded.displacements) },
+    { title: "Reactions of supports", of: "supports", parts: axes("", "reaction "), ...namedBy(recorded.supports) },
     ...elementGroups(recorded.elements ?? [], model, axes),
     ...contactGroups(recorded.contacts ?? [], model, axes),
-    { title: "Applied forces, sum", parts: components.map((_, place) => `/applied_forces/${place}`).map((name) => [name, quantityWords(name)]) },
+    { title: "Applied forces, sum", parts: plain(components.map((_, place) => `/applied_forces/${place}`)) },
     { title: "Accuracy and work", parts: plain(ACCURACY) },
   ].filter(({ keys }) => keys === undefined || keys.length > 0);
 }
+
+const namedBy = (names) => ({ keys: names, names });
 
 function elementGroups(places, model, axes) {
   const of = (kind) => places.map((place, row) => [place, row]).filter(([place]) => model.elements?.[place]?.kind === kind);
   const group = (title, kind, parts) => {
     const found = of(kind);
-    return { title, of: "elements", parts, keys: found.map(([, row]) => String(row)), names: found.map(([place]) => elementWords(model, place)) };
+    return {
+      title, of: "elements", parts, keys: found.map(([, row]) => String(row)),
+      names: found.map(([place]) => elementWords(model, place)),
+    };
   };
-  return [group("Forces of bars", "bar", [["axial_force", "axial force"]]), group("Forces of springs", "spring", axes("force/", "force "))];
+  return [
+    group("Forces of bars", "bar", [["axial_force", "axial force"]]),
+    group("Forces of springs", "spring", axes("force/", "force ")),
+  ];
 }
 
 function contactGroups(places, model, axes) {
@@ -48,7 +56,8 @@ function contactGroups(places, model, axes) {
     ...axes("reaction/", "reaction "), ...tangents("slip", "slip of the increment"), ...tangents("slip_total", "slip in total"),
   ];
   return [{
-    title: "Contacts", of: "contacts", parts, keys: places.map((_, row) => String(row)), names: places.map((place) => contactWords(model, place)),
+    title: "Contacts", of: "contacts", parts, keys: places.map((_, row) => String(row)),
+    names: places.map((place) => contactWords(model, place)),
   }];
 }
 
