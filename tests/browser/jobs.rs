@@ -12,7 +12,7 @@ use std::process::Command;
 
 /// The named points of the path that is drawn first.
 const NAMED: &str = "document.getElementById('path-plot').data?.[1]";
-const STATUS: &str = "document.getElementById('status')?.textContent";
+const STATUS: &str = "document.getElementById('status')?.dataset.status";
 
 fn numbers(values: &Value) -> Vec<f64> {
     values.as_array().expect("a list").iter().map(|value| value.as_f64().expect("a number")).collect()
@@ -29,9 +29,9 @@ async fn a_scene_is_run_and_its_limit_points_are_drawn_and_named() {
     assert!(plan.as_str().is_some_and(|plan| plan.contains("Left out: second-order cones")), "{plan}");
     browser.ask("document.getElementById('queue').click()").await;
     browser.until(&format!("{STATUS} === 'stopped'")).await;
-    browser.until(&format!("{NAMED}?.x.length === 2")).await;
+    browser.until(&format!("{NAMED}?.x.length === 3")).await;
     let drawn = browser.ask(NAMED).await;
-    assert_eq!(drawn["text"], json!(["A", "B"]));
+    assert_eq!(drawn["text"], json!(["A", "B", "C"]), "two limits and the end");
     let client = process::client();
     let jobs = process::get(&client, &service.url, "/v1/jobs").await.expect("a list");
     let id = jobs["jobs"][0]["id"].as_str().expect("an id").to_owned();
@@ -50,7 +50,7 @@ async fn a_scene_is_run_and_its_limit_points_are_drawn_and_named() {
     let address = browser.page.current_url().await.expect("an address").to_string();
     assert!(address.contains(&id), "{address}");
     browser.page.goto(&address).await.expect("a page");
-    browser.until(&format!("{NAMED}?.x.length === 2")).await;
+    browser.until(&format!("{NAMED}?.x.length === 3")).await;
     browser.until("document.querySelector('#structure-plot .main-svg') !== null").await;
     browser.close(&service.url, &[]).await;
 }
@@ -130,8 +130,7 @@ async fn a_text_of_the_readers_own_is_named_so_and_brought_back_where_another_ta
     assert_eq!(browser.ask(TEXT).await, before);
     assert_eq!(browser.ask(chosen).await, "klarbring");
     // The model of a job, though a text of one's own stands in the form.
-    let again =
-        "[...document.querySelectorAll('#heading button')].find(({textContent}) => /^Run again/.test(textContent))";
+    let again = "[...document.querySelectorAll('#heading button')].find(({textContent}) => /^Duplicate and edit/.test(textContent))";
     browser.ask(&format!("document.querySelector('#lists a[href=\"/?jobs={id}\"]').click()")).await;
     for _ in 0..2 {
         browser.until(&format!("{again} !== undefined && !document.getElementById('job').hidden")).await;

@@ -5,7 +5,9 @@ mod common;
 
 mod jobs;
 mod large;
+mod lists;
 mod manual;
+mod paths;
 mod pictures;
 mod states;
 mod views;

@@ -12,7 +12,7 @@ use arcslip::service::http::access::tokens;
 use serde_json::{Value, json};
 use std::process::Command;
 
-const STATUS: &str = "document.getElementById('status')?.textContent";
+const STATUS: &str = "document.getElementById('status')?.dataset.status";
 const STRUCTURE: &str = "document.getElementById('structure-plot')";
 
 #[tokio::test]

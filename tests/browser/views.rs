@@ -8,7 +8,7 @@ use crate::common::service::scene;
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 
-const STATUS: &str = "document.getElementById('status')?.textContent";
+const STATUS: &str = "document.getElementById('status')?.dataset.status";
 const PATH: &str = "document.getElementById('path-plot')";
 const MARK: &str = "document.getElementById('path-plot').data[2]";
 const STRUCTURE: &str = "document.getElementById('structure-plot')";
@@ -233,7 +233,7 @@ async fn paths_drawn_together_are_told_apart_by_what_differs() {
     // The name of a job shows that job alone.
     browser.ask("document.querySelectorAll('#lists a')[0].click()").await;
     browser.until(&format!("location.search === '?jobs={rough}'")).await;
-    browser.until(&format!("{PATH}.data.length < 5")).await;
+    browser.until(&format!("{PATH}.data[2].name === 'chosen increment'")).await;
     browser.close(served.url(), &[]).await;
 }
 
@@ -249,7 +249,7 @@ async fn a_path_keeps_its_colour_and_the_reader_the_zoom_when_another_becomes_th
     rough["model"]["contacts"][0]["friction"] = json!(0.6);
     let other = served.ended(&rough).await;
     browser.visit(&format!("{}/?jobs={one},{other}", served.url())).await;
-    browser.until(&format!("{PATH}.data?.length === 6")).await;
+    browser.until(&format!("{PATH}.data?.some(({{name}}) => name === 'exact')")).await;
     browser.ask(&format!("{PATH}.querySelector('[data-title=\"Zoom in\"]').click()")).await;
     let colour = |job: usize| format!("{PATH}.data[{}].line.color", 2 * job);
     let ranges = format!("[{PATH}.layout.xaxis.range, {PATH}.layout.yaxis.range]");
@@ -265,7 +265,11 @@ async fn a_path_keeps_its_colour_and_the_reader_the_zoom_when_another_becomes_th
     // One that goes takes its colour along.
     browser.ask(&format!("document.querySelector('[data-key=\"draw {other}\"]').click()")).await;
     browser
-        .until(&format!("{PATH}.data.length === 4 && {} === '{}'", colour(0), before[0].as_str().expect("a colour")))
+        .until(&format!(
+            "{PATH}.data[2].name === 'chosen increment' && {} === '{}'",
+            colour(0),
+            before[0].as_str().expect("a colour")
+        ))
         .await;
     browser.close(served.url(), &[]).await;
 }
@@ -345,10 +349,12 @@ async fn of_very_many_nodes_one_is_named_to_be_drawn_against() {
     let id = served.ended(&request).await;
     browser.visit(&format!("{}/?jobs={id}", served.url())).await;
     browser.until("document.getElementById('abscissa-node')?.value === 'tip'").await;
-    assert_eq!(browser.ask("document.getElementById('abscissa').options.length").await, 3);
+    let listed = "[...document.getElementById('abscissa').options].filter(({textContent}) => textContent.includes('n29')).length";
+    assert_eq!(browser.ask(listed).await, 0);
+    browser.put("#abscissa", "?displacements/0").await;
     browser.put("#abscissa-node", "n29").await;
     browser.until(&format!("{PATH}.layout.xaxis.title.text === 'displacement x of n29'")).await;
-    let proposed = "[...document.querySelectorAll('#nodes option')].map(({value}) => value).includes('n291')";
+    let proposed = "[...document.querySelectorAll('#abscissa-names option')].map(({value}) => value).includes('n291')";
     assert_eq!(browser.ask(proposed).await, true);
     browser.put("#abscissa", "arc_length").await;
     browser.until(&format!("{PATH}.layout.xaxis.title.text === 'arc length'")).await;

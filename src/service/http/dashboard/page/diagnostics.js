@@ -82,7 +82,7 @@ export class Diagnostics {
   tables(defaults) {
     const { path } = this;
     const many = path.index.length || 1;
-    fill(this.work, element("h3", {}, "Work"), table(["", "in all", "an increment"], WORK.map(([name, words]) => {
+    fill(this.work, element("h3", {}, "Work"), table(["", "total", "per increment"], WORK.map(([name, words]) => {
       // Counted from the start of the job.
       const sum = path.job.report?.[name] ?? path.columns.get(of(name)).at(-1) ?? 0;
       return [words, sum, Number(short(sum / many))];

@@ -67,6 +67,9 @@ export function table(head, rows) {
     element("tbody", {}, rows.map((row) => (row instanceof Node ? row : element("tr", {}, row.map(cell)))))));
 }
 
+/** Resolves when the next frame has been drawn. */
+export const frame = () => new Promise((resume) => requestAnimationFrame(() => setTimeout(resume)));
+
 /** Calls a function once in the next frame, however often it is requested. */
 export function onceAFrame(work) {
   let asked = false;

@@ -1,6 +1,7 @@
-// Saves answers of the service as files.
+// Saves answers of the service, and the plot of paths, as files.
 
 import { call, get } from "./api.js";
+import { button, element } from "./dom.js";
 
 export async function download(place, name) {
   save(await (await call(place)).blob(), name);
@@ -21,6 +22,25 @@ async function everyIncrement(id) {
     after = `&after=${page.next_after}`;
   }
   return new Blob([`{"increments": [\n${parts.join(",\n")}\n]}\n`], { type: "application/json" });
+}
+
+/** The buttons that save the plot; `plot()` answers `{place, curves, runs}`, or null before something is drawn. Calls
+ *  `failed(words)`. */
+export function plotButtons(plot, failed) {
+  const saving = (make) => async () => {
+    const found = plot();
+    if (!found) return;
+    try {
+      // Few readers need it, and nobody at first.
+      save(...await make(await import("./path-export.js"), found));
+    } catch (problem) {
+      failed(`The file cannot be made: ${problem.message}`);
+    }
+  };
+  const picture = (format) => saving(({ pictureFile }, found) => pictureFile(found, format));
+  return element("div", { class: "actions", role: "group", "aria-label": "save the plot" },
+    button("Save as PNG", picture("png"), { id: "path-png" }), button("Save as SVG", picture("svg"), { id: "path-svg" }),
+    button("Save the points (CSV)", saving(({ pointsFile }, found) => pointsFile(found)), { id: "path-points" }));
 }
 
 function save(blob, name) {

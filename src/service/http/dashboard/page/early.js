@@ -1,6 +1,7 @@
 // Requests the paths in the address before the rest of the page has loaded, as their data take longest.
 
 import { PathData } from "./path-data.js";
+import { ordinatesIn } from "./quantities.js";
 import { state } from "./state.js";
 
 /** Id to path, for the paths that have not been handed over yet. */
@@ -11,7 +12,7 @@ export function pathOnItsWay(id) {
   const path = begun.get(id) ?? new PathData(id);
   begun.delete(id);
   const { abscissa, ordinate } = state();
-  path.loading ??= path.load([abscissa, ordinate].filter(Boolean));
+  path.loading ??= path.load(abscissa, ordinatesIn(ordinate));
   return path;
 }
 

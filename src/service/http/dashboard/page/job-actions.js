@@ -22,7 +22,7 @@ export function jobActions(job, done, failed) {
     button("Parquet (zip)", then(() => download(`/v1/jobs/${id}/results.parquet`, `path-${id}-parquet.zip`))),
     button("Increments (json)", then(() => downloadIncrements(id))),
     button("Model (json)", then(() => download(`/v1/jobs/${id}/request`, `request-${id}.json`))),
-    button("Run again, changed", () => openModelOf(id)),
+    button("Duplicate and edit", () => openModelOf(id)),
     askingButton("Delete", `Delete “${nameOf(job)}” and all its increments?`, then(async () => {
       await call(`/v1/jobs/${id}`, { method: "DELETE" });
       leaveFor({ jobs: state().jobs.filter((other) => other !== id), at: null });

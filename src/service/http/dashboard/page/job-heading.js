@@ -3,7 +3,7 @@
 import { element, fill } from "./dom.js";
 import { jobActions } from "./job-actions.js";
 import { addressOfJob } from "./state.js";
-import { isGoingOn, nameOf, statusWords, stopSentence } from "./words.js";
+import { isGoingOn, nameOf, statusOf, statusWords, stopSentence } from "./words.js";
 
 export class JobHeading {
   /** Tells `changed()` where the lists are to be read again, `said(words)` what is refused, `titled(words)`. */
@@ -29,7 +29,7 @@ export class JobHeading {
     const name = nameOf(job);
     this.told.titled(others ? `${name} and ${others} more` : name);
     fill(this.summary, element("div", { class: "bar" }, element("h2", {}, name),
-      element("span", { class: `status ${job.status}`, id: "status" }, job.status)),
+      element("span", { class: `status ${job.status}`, id: "status", "data-status": job.status }, statusOf(job))),
     element("p", { id: "stop" }, many, isGoingOn(job) ? `The job ${statusWords(job.status)}.` : stopSentence(job),
       job.parent ? element("span", {}, " It follows ", element("a", {
         href: addressOfJob(job.parent.job, job.id), "data-key": "parent",

@@ -4,7 +4,7 @@
 import { isGivenUp } from "./api.js";
 import { Diagnostics } from "./diagnostics.js";
 import { Directions } from "./directions.js";
-import { atMostEvery, byId, onceAFrame } from "./dom.js";
+import { atMostEvery, byId, frame, onceAFrame } from "./dom.js";
 import { pathOnItsWay } from "./early.js";
 import { JobHeading } from "./job-heading.js";
 import { axesOf } from "./path-axes.js";
@@ -12,6 +12,7 @@ import { PathPlot } from "./path-plot.js";
 import { plotlyLoaded } from "./plotly-loaded.js";
 import { change, state } from "./state.js";
 import { StructurePlot } from "./structure-plot.js";
+import { sweepOf } from "./sweep-colours.js";
 import { isGoingOn } from "./words.js";
 
 /** Milliseconds between pictures of the structure of a path that grows: the path itself is drawn first. */
@@ -35,6 +36,7 @@ export class JobView {
       hovered: (id, index) => { if (id === state().jobs[0]) this.structure.choose(index); },
       left: () => this.structure.choose(state().at),
       axes: (axes) => change(axes),
+      failed: (words) => told.said(words),
     });
     this.structure = new StructurePlot(byId("structure"), {
       chosen, pointedAt: (yes) => this.pathPlot.pointAt(yes), turned: (turn) => change({ turn }),
@@ -95,7 +97,7 @@ export class JobView {
     return this.draw();
   }
 
-  /** The service can be reached again: fetches what is missing. */
+  /** The service can be reached again. */
   async recover() {
     if (!this.isWanted) return;
     this.hold();
@@ -199,8 +201,9 @@ export class JobView {
     const shown = this.paths();
     const axes = axesOf(shown, state());
     this.heading();
+    const read = shown.map((path) => path.need([axes.abscissa, ...axes.ordinates]));
     try {
-      await Promise.all([plotlyLoaded(), ...shown.map((path) => path.need([axes.abscissa, axes.ordinate]))]);
+      this.pathPlot.sweep = (await Promise.all([sweepOf(shown), plotlyLoaded(), ...read]))[0];
     } catch (problem) {
       if (!isGivenUp(problem)) this.told.said(problem.message, () => this.view());
       return;
@@ -219,7 +222,7 @@ export class JobView {
     this.diagnostics.show(first);
   }
 
-  /** Draws the exact path over the computed one once this is complete; drawing does not wait for it. */
+  /** Draws the exact path under the computed one once this is complete; drawing does not wait for it. */
   async layExact(path) {
     if (isGoingOn(path.job)) return;
     const before = path.exact;
@@ -237,8 +240,6 @@ export class JobView {
     if (this.first && this.isWanted) this.top.show(this.first, state().jobs.length - 1);
   }
 }
-
-const frame = () => new Promise((resume) => requestAnimationFrame(() => setTimeout(resume)));
 
 function measureFirstPath() {
   if (performance.getEntriesByName(FIRST_PATH).length > 0) return;

@@ -3,6 +3,7 @@
 import { callsList } from "./calls-list.js";
 import { button, byId, element, fill } from "./dom.js";
 import { JobView } from "./job-view.js";
+import { listsDrawer } from "./lists-drawer.js";
 import { onThemeChange } from "./plot-style.js";
 import { plotlyLoaded, warmPlotlyUp } from "./plotly-loaded.js";
 import { isReached, onReach } from "./reach.js";
@@ -79,6 +80,7 @@ byId("skip").addEventListener("click", (event) => {
   event.preventDefault();
   byId("view").focus();
 });
+listsDrawer(byId("open-lists"), byId("lists"));
 byId("open-run").addEventListener("click", () => change({ run: true }));
 addEventListener("keydown", (event) => {
   if (event.target.matches("input, textarea, select") || event.ctrlKey || event.metaKey || event.altKey) return;

@@ -1,130 +1,59 @@
-// The abscissa and ordinate of the plot of paths: names, labels, and the controls that choose them.
+// What the plot of paths draws against what: one abscissa, one or several ordinates, and the controls that choose them.
 
-import { choice, element, fill } from "./dom.js";
+import { button, element, fill } from "./dom.js";
+import { quantityChoice } from "./quantity-choice.js";
+import { quantityGroups } from "./quantity-groups.js";
+import { ordinatesIn, quantityWords, scaleOf } from "./quantities.js";
 
-/** The ordinates: [name, label]. */
-export const ORDINATES = [
-  ["load_factor", "load factor"], ["/energy/dissipated", "dissipated energy"], ["/energy/strain", "strain energy"],
-  ["/energy/external_work", "external work"],
-];
-const ARC_LENGTH = "arc_length";
-const LETTERS = "xyz";
-/** With at most this many nodes all components are listed as choices; with more, a node is typed. */
-const LISTED = 100;
-/** The number of nodes that are proposed for a typed text. */
-const PROPOSED = 40;
-
-const escaped = (name) => name.replaceAll("~", "~0").replaceAll("/", "~1").replaceAll(",", "~2");
-export const unescaped = (step) => step.replaceAll("~2", ",").replaceAll("~1", "/").replaceAll("~0", "~");
-
-/** The column of a displacement of a node. */
-export const displacement = (node, component) => `/displacements/${escaped(node)}/${component}`;
-
-/** The node and the component of a column; null for other columns. */
-export function ofDisplacement(name) {
-  const found = /^\/displacements\/([^/]+)\/([012])$/.exec(name);
-  return found ? { node: unescaped(found[1]), component: Number(found[2]) } : null;
-}
-
-export const isOrdinate = (name) => ORDINATES.some(([known]) => known === name);
-
-/** Whether the path of a request has a column that can be the abscissa. */
-export function isAbscissa(name, request) {
-  const of = ofDisplacement(name ?? "");
-  if (!of) return name === ARC_LENGTH;
-  const { model, analysis } = request;
-  const nodes = analysis?.record?.nodes;
-  const isRecorded = Array.isArray(nodes) ? nodes.includes(of.node) : Object.hasOwn(model.nodes, of.node);
-  return isRecorded && of.component < model.dimension;
-}
-
-/** What of the labels of units in the model stands behind a quantity, in brackets. */
-const unitOf = (request, ...powers) => {
-  const labels = powers.map((of) => request?.model?.units?.[of]);
-  return labels.length > 0 && labels.every(Boolean) ? ` [${labels.join(" ")}]` : "";
-};
-
-export const ordinateWords = (name, request = null) => (ORDINATES.find(([known]) => known === name)?.[1] ?? name)
-  + (name.startsWith("/energy/") ? unitOf(request, "force", "length") : "");
-
-export function abscissaWords(name, request = null) {
-  const of = ofDisplacement(name);
-  if (of && request) return abscissaWords(name) + unitOf(request, "length");
-  return of ? `displacement ${LETTERS[of.component]} of ${of.node}` : name === ARC_LENGTH ? "arc length" : name;
-}
+const USUAL = "load_factor";
+/** The most quantities that are drawn together. */
+export const MOST_ORDINATES = 6;
+/** Characters of a label in one line. */
+const LINE = 40;
 
 /** The axes for these paths: the chosen ones, if any path has them, or else those of the first path, in which case `refused` is
  *  set. */
 export function axesOf(paths, { abscissa, ordinate }) {
-  const refused = [];
-  const taken = (chosen, isKnown, usual, words) => {
-    if (chosen === null || isKnown) return chosen ?? usual;
-    refused.push(`There is no “${chosen}” here; ${words(usual)} is drawn in its place.`);
-    return usual;
-  };
-  return {
-    abscissa: taken(abscissa, paths.some((path) => path.knows(abscissa)), paths[0].ownAbscissa(), abscissaWords),
-    ordinate: taken(ordinate, isOrdinate(ordinate), ORDINATES[0][0], ordinateWords),
-    refused: refused.join(" "),
-  };
+  const isKnown = (name) => paths.some((path) => path.knows(name));
+  const own = paths[0].ownAbscissa();
+  const isOwn = abscissa !== null && !isKnown(abscissa);
+  const asked = ordinatesIn(ordinate);
+  const known = asked.filter(isKnown);
+  const unknown = asked.filter((name) => !isKnown(name));
+  const ordinates = (known.length ? known : [USUAL]).slice(0, MOST_ORDINATES);
+  const refused = [
+    isOwn ? `There is no “${abscissa}” here; ${quantityWords(own)} is drawn in its place.` : null,
+    ...unknown.map((name) => `There is no “${name}” here; ${quantityWords(ordinates[0])} is drawn in its place.`),
+    known.length > MOST_ORDINATES ? `At most ${MOST_ORDINATES} quantities are drawn together.` : null,
+  ];
+  return { abscissa: isOwn || abscissa === null ? own : abscissa, ordinates, refused: refused.filter(Boolean).join(" ") };
 }
 
-function recorded({ model, analysis }) {
-  const nodes = analysis?.record?.nodes;
-  return Array.isArray(nodes) ? nodes : Object.keys(model.nodes);
+/** Whether a quantity has the scale of the first one, and so its axis; others have the axis on the right. */
+export const isOnFirstAxis = (name, ordinates) => scaleOf(name) === scaleOf(ordinates[0]);
+
+/** The label of an axis with these quantities. */
+export function axisWords(names, request) {
+  if (names.length > 2) return `${quantityWords(names[0], request)} and ${names.length - 1} more`;
+  const words = names.map((name) => quantityWords(name, request));
+  const line = words.join(", ");
+  return line.length > LINE ? words.join(",\n") : line;
 }
 
 /** The controls; `chosen({abscissa} or {ordinate})` is told of a change. */
-export function axesControls(place, request, { abscissa, ordinate }, chosen) {
-  const nodes = recorded(request);
-  fill(place,
-    element("label", {}, "Plot ", choice({
-      id: "ordinate", "data-key": "ordinate", onchange: (event) => chosen({ ordinate: event.target.value }),
-    }, ORDINATES, ordinate)),
-    nodes.length > LISTED ? ofManyNodes(nodes, request, abscissa, chosen) : ofFewNodes(nodes, request, abscissa, chosen));
-}
-
-function ofFewNodes(nodes, { model }, abscissa, chosen) {
-  const components = [...LETTERS.slice(0, model.dimension)];
-  const options = nodes.flatMap((node) => components.map((letter, place) => [displacement(node, place), `${letter} of ${node}`]));
-  return element("label", {}, "against ", choice({
-    id: "abscissa", "data-key": "abscissa", onchange: (event) => chosen({ abscissa: event.target.value }),
-  }, [[ARC_LENGTH, "arc length"], ...options], abscissa));
-}
-
-/** A list of thousands of choices would be slow and of no use: the node is typed, with proposals. */
-function ofManyNodes(nodes, { model }, abscissa, chosen) {
-  const known = new Set(nodes);
-  const of = ofDisplacement(abscissa);
-  const proposals = element("datalist", { id: "nodes" });
-  const propose = () => {
-    const found = [];
-    for (const node of nodes) {
-      if (node.includes(input.value)) found.push(node);
-      if (found.length === PROPOSED) break;
-    }
-    fill(proposals, found.map((value) => element("option", { value })));
-  };
-  const input = element("input", {
-    type: "text", id: "abscissa-node", "data-key": "abscissa-node", list: "nodes", size: 10, value: of?.node ?? nodes[0],
-    autocomplete: "off", "aria-label": `node, one of ${nodes.length}`, oninput: () => { input.setCustomValidity(""); propose(); },
-    onchange: () => choose(),
-  });
-  const component = choice({ id: "abscissa", "data-key": "abscissa", onchange: () => choose() }, [
-    [ARC_LENGTH, "arc length"],
-    ...[...LETTERS.slice(0, model.dimension)].map((letter, place) => [String(place), `${letter} of node`]),
-  ], of ? String(of.component) : ARC_LENGTH);
-  const choose = () => {
-    const isOfNode = component.value !== ARC_LENGTH;
-    input.disabled = !isOfNode;
-    if (isOfNode && !known.has(input.value)) {
-      input.setCustomValidity(`No node of that name is recorded; there are ${nodes.length}, such as ${nodes[0]}.`);
-      input.reportValidity();
-      return;
-    }
-    chosen({ abscissa: isOfNode ? displacement(input.value, component.value) : ARC_LENGTH });
-  };
-  input.disabled = of === null;
-  propose();
-  return [element("label", {}, "against ", component), input, proposals];
+export function axesControls(place, request, { abscissa, ordinates }, chosen) {
+  const groups = quantityGroups(request);
+  const draw = (names) => chosen({ ordinate: [...new Set(names)].join(",") });
+  const without = (name) => ordinates.filter((other) => other !== name);
+  const first = quantityChoice({ id: "ordinate", label: "quantity to plot", groups, value: ordinates[0] },
+    (name) => draw([name, ...ordinates.slice(1)]));
+  const further = ordinates.slice(1).map((name) => element("span", { class: "chip" }, quantityWords(name, request),
+    button("×", () => draw(without(name)), { class: "plain", "aria-label": `leave out ${quantityWords(name, request)}` })));
+  const more = ordinates.length < MOST_ORDINATES
+    ? quantityChoice({ id: "ordinate-more", label: "another quantity to plot as well", groups, value: null, empty: "+ another" },
+      (name) => draw([...ordinates, name]))
+    : element("span", { class: "quiet" }, `${MOST_ORDINATES} quantities are the most`);
+  const against = quantityChoice({ id: "abscissa", label: "quantity to plot against", groups, value: abscissa },
+    (name) => chosen({ abscissa: name }));
+  fill(place, element("span", {}, "Plot ", first), further, element("span", {}, more), element("span", {}, "against ", against));
 }

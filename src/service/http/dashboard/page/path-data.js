@@ -2,7 +2,7 @@
 // increments that a view has requested.
 
 import { get } from "./api.js";
-import { displacement, isAbscissa, isOrdinate, unescaped } from "./path-axes.js";
+import { displacement, isRecorded, unescaped } from "./quantities.js";
 import { follow } from "./stream.js";
 import { isGoingOn } from "./words.js";
 
@@ -39,13 +39,13 @@ export class PathData {
   }
 
   /** Reads the stored increments, with the given columns if the job has them, then follows the stream. */
-  async load(columns) {
+  async load(abscissa, ordinates) {
     const place = `/v1/jobs/${this.id}`;
     const { signal } = this.given;
     [this.job, this.request] = await Promise.all([get(place, signal), get(`${place}/request`, signal)]);
-    const known = columns.filter((name) => isOrdinate(name) || this.knows(name));
-    const own = columns.some((name) => this.knows(name)) ? [] : [this.ownAbscissa()];
-    for (const name of [...ALWAYS, ...known, ...own]) this.columns.set(name, []);
+    const isKnown = abscissa !== null && this.knows(abscissa);
+    const known = ordinates.filter((name) => this.knows(name));
+    for (const name of [...ALWAYS, ...known, isKnown ? abscissa : this.ownAbscissa()]) this.columns.set(name, []);
     let after = null;
     for (let pages = 1; ; pages++) {
       const page = await this.inTurn(() => this.readOn(after));
@@ -117,7 +117,7 @@ export class PathData {
   }
 
   async readMissing(names) {
-    const missing = names.filter((name) => !this.columns.has(name));
+    const missing = [...new Set(names)].filter((name) => !this.columns.has(name));
     if (missing.length === 0) return;
     const found = missing.map(() => []);
     let after = null;
@@ -238,9 +238,9 @@ export class PathData {
     return "arc_length";
   }
 
-  /** Whether there is a column that can be the abscissa. */
-  knows(abscissa) {
-    return isAbscissa(abscissa, this.request);
+  /** Whether the increments of the job have such a column. */
+  knows(name) {
+    return isRecorded(name, this.request);
   }
 
   close() {

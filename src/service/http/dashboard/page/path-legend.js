@@ -1,36 +1,102 @@
-// The legend below the plot of the paths: the names of the lines, paths that cannot be drawn, and the named points of the first
-// path.
+// What stands below the plot of the paths: the names of the curves, the key of lines and marks, and the points of the first
+// path at which something happens.
 
 import { element, fill } from "./dom.js";
+import { MARKS } from "./path-curve.js";
 import { pathNames } from "./path-names.js";
-import { dashedSwatch } from "./plot-style.js";
-import { named } from "./points.js";
-import { pointWords, short } from "./words.js";
+import { dashedSwatch, EXACT, fromSheet, stageColour, stageDash } from "./plot-style.js";
+import { branchingPlaces, named } from "./points.js";
+import { quantityWords } from "./quantities.js";
+import { kindWords, pointWords, short } from "./words.js";
 
-/** The most named points in the list. */
+/** The most points in the list, and the most stages in the key. */
 const LISTED = 60;
+const STAGES = 20;
+const SIGNS = { smooth_limit: "●", nonsmooth_limit: "◆", contact_change: "○", end: "■", bifurcation: "◇" };
 
-/** `lacks(path)`: what the path has no values of, in words, or null; `exact`: the path in closed form that is laid over, or
- *  null. */
-export function pathLegend(place, paths, looks, lacks, exact) {
-  const names = paths.length > 1 ? pathNames(paths) : [];
-  fill(place, names.map((name, which) => {
-    const without = lacks(paths[which]);
-    return element("li", { class: without ? "lacking" : null },
-      element("span", { class: "swatch long line", style: dashedSwatch(looks.colour(paths[which]), looks.dash(paths[which])) }),
-      name, without ? element("span", { class: "quiet" }, ` (not drawn: it has no ${without})`) : null);
-  }),
-  exact ? element("li", { title: exact.formula }, element("span", { class: "swatch dashed" }), `exact (${exact.name})`) : null);
+/** A name for each curve. */
+export function curveNames(curves, runs) {
+  const paths = [...new Set(curves.map(({ path }) => path))];
+  const isOne = curves.every(({ ordinate }) => ordinate === curves[0].ordinate);
+  const ofPath = new Map(paths.length > 1 ? pathNames(paths, runs).map((name, place) => [paths[place], name]) : []);
+  return curves.map(({ path, ordinate, yaxis }) => [
+    ofPath.get(path),
+    isOne ? null : `${quantityWords(ordinate, path.request)}${yaxis === "y2" ? " (axis on the right)" : ""}`,
+  ].filter(Boolean).join(": "));
 }
 
-/** `choose(index)` is told of a named point that is chosen. */
+/** `exact`: the path in closed form that is drawn under them, or null. */
+export function pathLegend(place, curves, runs, exact) {
+  const names = curves.length > 1 ? curveNames(curves, runs) : [];
+  fill(place, names.map((name, which) => {
+    const { colour, dash } = curves[which];
+    const without = curves[which].lacks();
+    return element("li", { class: without ? "lacking" : null },
+      element("span", { class: "swatch long line", style: dashedSwatch(colour, dash) }),
+      name, without ? element("span", { class: "quiet" }, ` (not drawn: it has no ${quantityWords(without)})`) : null);
+  }),
+  exact ? element("li", { title: exact.formula }, element("span", { class: "swatch long", style: `background:var(--text);opacity:${EXACT.opacity}` }), `exact (${exact.name})`) : null);
+}
+
+/** The rows of the key, `[{words, colour, dash} or {words, colour, filling, sign, symbol}]`. */
+export function keyRows(curves) {
+  const paths = [...new Set(curves.map(({ path }) => path))];
+  const isAlone = curves.length === 1;
+  const rows = isAlone ? stageRows(curves[0]) : [];
+  const ink = fromSheet("--text");
+  if (paths.some(falls)) {
+    const words = "the load falls: a load that only grows leaves the path here";
+    rows.push({ words, colour: isAlone ? curves[0].colour : ink, dash: "dot" });
+  }
+  if (paths.some((path) => branchingPlaces(path).size > 0)) {
+    rows.push({ words: "bifurcation points: more than one way on", colour: fromSheet("--bifurcation"), dash: "solid" });
+  }
+  const kinds = new Set(paths.flatMap((path) => named(path).map(({ kind }) => kind)));
+  for (const [kind, [colour, symbol, filling]] of Object.entries(MARKS)) {
+    if (!kinds.has(kind)) continue;
+    const words = kind === "bifurcation" ? "bifurcation points begin" : kindWords(kind);
+    rows.push({ words, colour: fromSheet(colour), filling: fromSheet(filling), sign: SIGNS[kind], symbol });
+  }
+  return rows;
+}
+
+export function lineKey(place, curves) {
+  fill(place, keyRows(curves).map(({ words, colour, dash, sign }) => element("li", {},
+    sign ? element("span", { class: "sign", style: `color:${colour}`, "aria-hidden": "true" }, sign)
+      : element("span", { class: "swatch long line", style: dashedSwatch(colour, dash) }), words)));
+}
+
+function stageRows({ path, colour }) {
+  const names = stagesOf(path);
+  const rows = names.slice(0, STAGES).map((name, stage) => ({
+    words: `stage ${name}`, colour: stage % 4 ? stageColour(stage) : colour, dash: stageDash(stage),
+  }));
+  if (names.length > STAGES) rows.push({ words: `and ${names.length - STAGES} more stages`, colour: "transparent", dash: "solid" });
+  return rows;
+}
+
+/** The names of the stages that the path has reached, in order. */
+export function stagesOf(path) {
+  return path.columns.get("stage").filter((name, place, all) => place === 0 || name !== all[place - 1]);
+}
+
+function falls(path) {
+  const [stages, loads] = [path.columns.get("stage"), path.columns.get("load_factor")];
+  return loads.some((load, place) => place > 0 && stages[place] === stages[place - 1] && load < loads[place - 1]);
+}
+
+/** A point of the list in words. */
+export function namedWords(path, point) {
+  const load = path.columns.get("load_factor")[path.placeOf(point.index)];
+  return `${pointWords(point)} at load ${short(load)}${point.event ? `: ${point.event}` : ""}`;
+}
+
+/** `choose(index)` is told of a point that is chosen. */
 export function namedPoints(place, path, choose) {
   const found = named(path);
-  const loads = path.columns.get("load_factor");
   fill(place, found.slice(0, LISTED).map((point) => element("li", {},
     element("button", {
-      type: "button", class: "plain", "data-key": point.name, onclick: () => choose(point.index),
-    }, element("b", {}, point.name), ` ${pointWords(point)} at load ${short(loads[path.placeOf(point.index)])}`,
-    point.event ? `: ${point.event}` : ""))),
+      type: "button", class: "plain", "data-key": `point ${point.index}`, onclick: () => choose(point.index),
+    }, element("span", { class: "letter" }, point.name || SIGNS.bifurcation), ` ${namedWords(path, point)}`))),
   found.length > LISTED ? element("li", {}, `and ${found.length - LISTED} more`) : null);
 }

@@ -7,13 +7,13 @@ import { differences, nameOf } from "./words.js";
 /** Characters at the end of a job's id, where ids of jobs queued together differ. */
 const SHORT = 6;
 
-/** The styles of paths: a new path gets the first free one, and the others keep theirs. */
+/** The styles of curves: a new one gets the first free style, and the others keep theirs. */
 export class PathLooks {
   constructor() {
     this.places = new Map();
   }
 
-  /** Sets the ids of the paths that are drawn from now on. */
+  /** Sets the keys of the curves that are drawn from now on. */
   keep(ids) {
     for (const id of this.places.keys()) if (!ids.includes(id)) this.places.delete(id);
     const taken = new Set(this.places.values());
@@ -26,17 +26,17 @@ export class PathLooks {
     }
   }
 
-  colour({ id }) {
-    return colourOf(this.places.get(id) ?? 0);
-  }
-
-  dash({ id }) {
-    return dashOf(this.places.get(id) ?? 0);
+  of(key) {
+    const place = this.places.get(key) ?? 0;
+    return { colour: colourOf(place), dash: dashOf(place) };
   }
 }
 
-/** A name for each path, with the settings in which they differ, and the end of the id if these are not enough. */
-export function pathNames(paths) {
+/** A name for each path, with the settings in which they differ, and the end of the id if these are not enough; of the runs of
+ *  a sweep their values. */
+export function pathNames(paths, runs) {
+  const values = runs ? paths.map((path) => runs.nameOf(path)) : [];
+  if (values.length > 0 && values.every(Boolean)) return values;
   const apart = differences(paths.map(({ request }) => request));
   const names = paths.map((path, place) => [nameOf(path.job), apart[place], branchWords(path, paths)].filter(Boolean).join(", "));
   return names.map((name, place) => (names.indexOf(name) === names.lastIndexOf(name) ? name
@@ -48,6 +48,6 @@ function branchWords({ job: { parent } }, paths) {
   if (!parent) return "";
   const origin = paths.find(({ id }) => id === parent.job);
   const point = origin ? named(origin).find(({ index }) => index === parent.increment) : null;
-  const place = point ? `${point.name} (increment ${parent.increment})` : `increment ${parent.increment}`;
+  const place = point?.name ? `${point.name} (increment ${parent.increment})` : `increment ${parent.increment}`;
   return `branch at ${place}, direction ${parent.direction}`;
 }

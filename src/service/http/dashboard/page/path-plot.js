@@ -1,32 +1,45 @@
-// Load, or an energy, against a displacement, of one job or several: lines that grow while they stream, named points, the
-// chosen increment.
+// Recorded quantities of one job or several against one another: lines that grow while they stream, points at which something
+// happens, the chosen increment.
 
-import { element, fill } from "./dom.js";
-import { abscissaWords, axesControls, ofDisplacement, ordinateWords } from "./path-axes.js";
-import { namedPoints, pathLegend } from "./path-legend.js";
+import { choice, element, fill } from "./dom.js";
+import { plotButtons } from "./downloads.js";
+import { axesControls, axisWords, isOnFirstAxis } from "./path-axes.js";
+import { Curve } from "./path-curve.js";
+import { lineKey, namedPoints, pathLegend } from "./path-legend.js";
 import { PathLooks } from "./path-names.js";
+import { exactTrace, pathWords } from "./path-words.js";
 import { axis, CONFIGURATION, fromSheet, layout } from "./plot-style.js";
 import { named } from "./points.js";
-import { pointWords, verbatim } from "./words.js";
+import { SweepColours } from "./sweep-colours.js";
 
 /** Up to this number of increments each has a marker. */
-const MARKED = 400;
+export const MARKED = 400;
+/** Up to this number of curves the points of each have letters. */
+const LETTERED = 4;
 /** The largest part of the time that is spent on drawing. */
 const SHARE = 0.25;
-/** Traces of a job: its line, its named points. */
-const OF_A_JOB = 2;
+/** Traces of a curve that come first: its points for the pointer, those at which something happens. */
+const OF_A_CURVE = 2;
 const MARK = { plain: 13, pointedAt: 22 };
 
 export class PathPlot {
-  /** Tells `chosen(id, index)`, `hovered(id, index)`, `left()` and `axes({abscissa} or {ordinate})`. */
+  /** Tells `chosen(id, index)`, `hovered(id, index)`, `left()`, `axes({abscissa} or {ordinate})` and `failed(words)`. */
   constructor(panel, told) {
     this.told = told;
-    this.choices = element("div", { class: "choices" });
+    this.choices = element("div", { class: "choices", id: "path-choices" });
+    this.colouring = element("div", { class: "choices" });
     this.place = element("div", { class: "plot", id: "path-plot" });
     this.legend = element("ul", { class: "legend" });
+    this.key = element("ul", { class: "key", id: "path-key", "aria-label": "lines and marks" });
+    this.words = element("p", { class: "quiet", id: "path-words" });
     this.list = element("ol", { class: "named", "aria-label": "named points" });
-    fill(panel, element("h2", {}, "Path"), this.choices, this.place, this.legend, this.list);
+    const drawn = () => (this.curves.length ? { place: this.place, curves: this.curves, runs: this.runs } : null);
+    fill(panel, element("h2", {}, "Path"), this.choices, this.colouring, this.place, this.legend, this.key, this.words,
+      plotButtons(drawn, told.failed), this.list);
     this.paths = [];
+    this.curves = [];
+    /** The sweep of which all paths are runs, or null. */
+    this.sweep = null;
     this.looks = new PathLooks();
     this.revision = 0;
     this.drawn = [];
@@ -37,46 +50,73 @@ export class PathPlot {
   /** Draws axes without a path while it is being loaded. */
   async prepare() {
     this.paths = [];
-    fill(this.legend);
-    fill(this.list);
+    this.curves = [];
+    for (const place of [this.legend, this.key, this.list, this.words]) fill(place);
     await Plotly.react(this.place, [], layout({ xaxis: axis(""), yaxis: axis("") }), CONFIGURATION);
   }
 
-  /** Draws everything anew; `axes`: names of the abscissa and of the ordinate. */
+  /** Draws everything anew; `axes`: names of the abscissa and of the ordinates. */
   async draw(paths, axes, at) {
     this.follow(paths, axes);
     this.at = at;
-    this.controls();
-    const traces = paths.flatMap((path) => {
-      const colour = this.looks.colour(path);
-      return [
-        {
-          ...this.line(path, 0), type: "scatter", mode: mode(path),
-          line: { color: colour, width: 2, dash: this.looks.dash(path) }, marker: { color: colour, size: 4 },
-          hovertemplate: "%{x:.5g}, %{y:.5g}<br>increment %{customdata}<extra></extra>",
-        },
-        this.points(path, colour),
-      ];
-    });
-    this.drawn = paths.map((path) => path.index.length);
-    this.drawnPoints = paths.map((path) => named(path).length);
+    this.curves = this.made();
+    const traces = this.curves.flatMap((curve) => [curve.base(), curve.points(this.curves.length <= LETTERED)]);
+    this.drawn = this.curves.map(({ path }) => path.index.length);
+    this.drawnPoints = this.curves.map(({ path }) => named(path).length);
+    this.isMarked = this.curves.map((curve) => this.hasMarkers(curve));
     traces.push({
-      ...this.mark(), type: "scatter", mode: "markers", hoverinfo: "skip",
+      ...this.mark(), type: "scatter", mode: "markers", hoverinfo: "skip", name: "chosen increment", zorder: 5, showlegend: false,
+      yaxis: this.curves[0].yaxis,
       marker: { size: MARK.plain, symbol: "circle-open", color: fromSheet("--text"), line: { width: 2 } },
     });
-    const exact = this.exact();
+    const exact = exactTrace(this.curves);
     if (exact) traces.push(exact);
-    await Plotly.react(this.place, traces, layout({
-      xaxis: axis(abscissaWords(axes.abscissa, paths[0].request)),
-      yaxis: axis(ordinateWords(axes.ordinate, paths[0].request)), uirevision: this.revision,
-    }), CONFIGURATION);
+    this.strandPlaces = this.curves.map((curve, which) => {
+      const places = new Map();
+      for (const [key, piece] of curve.strands.grow(0)) {
+        places.set(key, traces.push(curve.strands.trace(key, piece, this.isMarked[which])) - 1);
+      }
+      return places;
+    });
+    if (this.runs?.isScale) traces.push(this.runs.bar());
+    this.controls(exact);
+    await Plotly.react(this.place, traces, this.layout(), CONFIGURATION);
     this.listen();
     namedPoints(this.list, paths[0], (index) => this.told.chosen(paths[0].id, index));
   }
 
+  /** The curves: each ordinate of each path. */
+  made() {
+    const { paths, axes } = this;
+    this.runs = this.sweep && !this.sweep.problem && axes.ordinates.length === 1 ? new SweepColours(this.sweep, paths) : null;
+    this.runs?.by(this.colouredBy);
+    const isAlone = paths.length * axes.ordinates.length === 1;
+    this.keep(paths.map(({ id }) => id));
+    return paths.flatMap((path) => axes.ordinates.map((ordinate, place) => new Curve(path, axes.abscissa, ordinate, {
+      look: this.runs?.isScale ? this.runs.look(path) : this.looks.of(keyOf(path.id, ordinate, place)),
+      isFirstAxis: isOnFirstAxis(ordinate, axes.ordinates), isAlone,
+    })));
+  }
+
+  layout() {
+    const { abscissa, ordinates } = this.axes;
+    const { request } = this.paths[0];
+    const right = ordinates.filter((name) => !isOnFirstAxis(name, ordinates));
+    return layout({
+      xaxis: axis(axisWords([abscissa], request)),
+      yaxis: axis(axisWords(ordinates.filter((name) => isOnFirstAxis(name, ordinates)), request)), uirevision: this.revision,
+      ...(right.length ? { yaxis2: { ...axis(axisWords(right, request)), overlaying: "y", side: "right", showgrid: false } } : {}),
+      ...(this.runs?.isScale ? { margin: { l: 56, r: 12, t: 84, b: 44 } } : {}),
+    });
+  }
+
+  hasMarkers({ path }) {
+    return path.index.length <= MARKED && this.curves.length <= LETTERED;
+  }
+
   /** The zoom is kept as long as one of the drawn paths and the axes remain. */
   follow(paths, axes) {
-    const stays = this.axes?.abscissa === axes.abscissa && this.axes?.ordinate === axes.ordinate
+    const stays = this.axes?.abscissa === axes.abscissa && this.axes?.ordinates.join() === axes.ordinates.join()
       && paths.some(({ id }) => this.paths.some((before) => before.id === id));
     if (!stays) this.revision++;
     this.paths = paths;
@@ -85,7 +125,8 @@ export class PathPlot {
 
   /** Sets the jobs that are drawn from now on; each keeps its style as long as it is among them. */
   keep(ids) {
-    this.looks.keep(ids);
+    const ordinates = this.axes?.ordinates ?? [""];
+    this.looks.keep(ids.flatMap((id) => ordinates.map((ordinate, place) => keyOf(id, ordinate, place))));
   }
 
   isDrawn() {
@@ -97,7 +138,7 @@ export class PathPlot {
     this.listens = true;
     const where = ({ points }) => {
       const { curveNumber, customdata } = points[0] ?? {};
-      const path = this.paths[Math.floor(curveNumber / OF_A_JOB)];
+      const path = this.curves[Math.floor(curveNumber / OF_A_CURVE)]?.path;
       return path && Number.isInteger(customdata) ? [path.id, customdata] : null;
     };
     this.place.on("plotly_click", (event) => { const found = where(event); if (found) this.told.chosen(...found); });
@@ -105,80 +146,17 @@ export class PathPlot {
     this.place.on("plotly_unhover", () => this.told.left());
   }
 
-  abscissaOf(path) {
-    return path.columns.get(this.axes.abscissa) ?? [];
-  }
-
-  ordinateOf(path) {
-    return path.columns.get(this.axes.ordinate) ?? [];
-  }
-
-  /** The coordinates of a path in the plot; a point without an abscissa is left out and does not affect the range of the ordinate. */
-  placesOf(path) {
-    const [abscissa, ordinate] = [this.abscissaOf(path), this.ordinateOf(path)];
-    return { x: (place) => abscissa[place], y: (place) => (abscissa[place] === null ? null : ordinate[place]) };
-  }
-
-  /** The points from an increment on. The load factor starts again with each stage, where the line is interrupted. */
-  line(path, from) {
-    const line = { x: [], y: [], customdata: [] };
-    const { x, y } = this.placesOf(path);
-    const stages = path.columns.get("stage");
-    for (let place = from; place < path.index.length; place++) {
-      if (place > 0 && stages[place] !== stages[place - 1]) for (const part of Object.values(line)) part.push(null);
-      line.x.push(x(place));
-      line.y.push(y(place));
-      line.customdata.push(path.index[place]);
-    }
-    return line;
-  }
-
-  points(path, colour) {
-    const found = named(path);
-    const places = found.map(({ index }) => path.placeOf(index));
-    const { x, y } = this.placesOf(path);
-    return {
-      x: places.map(x), y: places.map(y),
-      text: found.map(({ name }) => name), customdata: found.map(({ index }) => index),
-      meta: found.map(({ kind }) => kind), type: "scatter", mode: "markers+text", textposition: "top center",
-      hovertext: found.map((point) => `${point.name}: ${pointWords(point)}${point.event ? `, ${verbatim(point.event)}` : ""}`),
-      hovertemplate: "%{hovertext}<br>%{x:.5g}, %{y:.5g}<extra></extra>",
-      marker: {
-        size: 9, color: fromSheet("--panel"), line: { color: colour, width: 2 },
-        symbol: found.map(({ kind, bifurcation }) =>
-          bifurcation ? "diamond" : kind === "contact_change" ? "square" : "circle"),
-      },
-      textfont: { color: colour, size: 14 }, cliponaxis: false,
-    };
-  }
-
-  /** The exact solution of the first path, drawn over all paths. */
-  exact() {
-    const [path] = this.paths;
-    const of = ofDisplacement(this.axes.abscissa);
-    const found = path?.exact?.path;
-    if (!found || !of || this.axes.ordinate !== "load_factor") return null;
-    const [x, y] = [[], []];
-    for (const stage of found.stages) {
-      x.push(...(stage.displacements[of.node]?.[of.component] ?? []), null);
-      y.push(...stage.load_factor, null);
-    }
-    return {
-      x, y, type: "scatter", mode: "lines", name: "exact", hoverinfo: "skip",
-      line: { color: fromSheet("--text"), width: 1, dash: "dash" },
-    };
-  }
-
+  /** The chosen increment, on the first curve. */
   mark() {
-    const path = this.paths[0];
-    const place = path ? path.placeOf(this.at ?? path.last()) : -1;
-    return place < 0 ? { x: [], y: [] } : { x: [this.abscissaOf(path)[place]], y: [this.ordinateOf(path)[place]] };
+    const [curve] = this.curves;
+    const place = curve ? curve.path.placeOf(this.at ?? curve.path.last()) : -1;
+    return place < 0 ? { x: [], y: [] } : { x: [curve.x(place)], y: [curve.y(place)] };
   }
 
   restyleMark(more) {
-    if (!this.isDrawn() || this.paths.length === 0) return;
+    if (!this.isDrawn() || this.curves.length === 0) return;
     const { x, y } = this.mark();
-    Plotly.restyle(this.place, { x: [x], y: [y], ...more }, [this.paths.length * OF_A_JOB]);
+    Plotly.restyle(this.place, { x: [x], y: [y], ...more }, [this.curves.length * OF_A_CURVE]);
   }
 
   /** The chosen increment has changed. */
@@ -202,46 +180,62 @@ export class PathPlot {
       const took = performance.now() - began;
       setTimeout(() => {
         this.waits = false;
-        if (this.paths.some((path, place) => path.index.length > this.drawn[place])) this.grow();
+        if (this.curves.some(({ path }, place) => path.index.length > this.drawn[place])) this.grow();
       }, took * (1 / SHARE - 1));
     });
   }
 
   async extend() {
-    const isOther = (path, place) => mode(path) !== this.place.data?.[place * OF_A_JOB]?.mode
-      || named(path).length !== this.drawnPoints[place];
-    if (this.paths.some(isOther)) {
+    const isOther = (curve, place) => this.hasMarkers(curve) !== this.isMarked[place]
+      || named(curve.path).length !== this.drawnPoints[place];
+    const update = { x: [], y: [], customdata: [] };
+    const traces = [];
+    const extend = (piece, trace) => {
+      for (const member of Object.keys(update)) update[member].push(piece[member]);
+      traces.push(trace);
+    };
+    let isNew = this.curves.some(isOther);
+    if (!isNew) {
+      this.curves.forEach((curve, which) => {
+        const from = this.drawn[which];
+        if (curve.path.index.length <= from) return;
+        extend(curve.line(from), which * OF_A_CURVE);
+        for (const [key, piece] of curve.strands.grow(from)) {
+          const trace = this.strandPlaces[which].get(key);
+          if (trace === undefined) isNew = true;
+          else extend(piece, trace);
+        }
+        this.drawn[which] = curve.path.index.length;
+      });
+    }
+    if (isNew) {
       await this.draw(this.paths, this.axes, this.at);
       return;
     }
-    const update = { x: [], y: [], customdata: [] };
-    const traces = [];
-    this.paths.forEach((path, place) => {
-      const from = this.drawn[place];
-      if (path.index.length <= from) return;
-      const more = this.line(path, from);
-      for (const member of Object.keys(update)) update[member].push(more[member]);
-      traces.push(place * OF_A_JOB);
-      this.drawn[place] = path.index.length;
-    });
     if (traces.length === 0) return;
-    if (this.at === null) Object.assign(this.place.data[this.paths.length * OF_A_JOB], this.mark());
+    if (this.at === null) Object.assign(this.place.data[this.curves.length * OF_A_CURVE], this.mark());
     await Plotly.extendTraces(this.place, update, traces);
   }
 
   /** Replaces the choice of axes only if the choices change, so that it keeps the focus while a path grows. */
-  controls() {
-    const path = this.paths[0];
-    if (!path) return;
-    const { abscissa, ordinate } = this.axes;
-    const key = `${path.id} ${abscissa} ${ordinate}`;
+  controls(exact) {
+    const [path] = this.paths;
+    const { abscissa, ordinates } = this.axes;
+    const key = `${path.id} ${abscissa} ${ordinates}`;
     if (this.choices.dataset.of !== key) {
       this.choices.dataset.of = key;
       axesControls(this.choices, path.request, this.axes, (axes) => this.told.axes(axes));
     }
-    const lacks = (one) => (!one.has(abscissa) ? abscissaWords(abscissa) : !one.has(ordinate) ? ordinateWords(ordinate) : null);
-    pathLegend(this.legend, this.paths, this.looks, lacks, this.exact() ? path.exact.path : null);
+    pathLegend(this.legend, this.curves, this.runs, exact ? path.exact.path : null);
+    lineKey(this.key, this.curves);
+    this.words.textContent = pathWords({ curves: this.curves, sweep: this.sweep, runs: this.runs, marked: MARKED, lettered: LETTERED });
+    const many = this.runs?.choices.length ?? 0;
+    fill(this.colouring, many < 2 ? null : element("label", {}, "Colour by ", choice({
+      id: "colour-by", "data-key": "colour-by",
+      onchange: (event) => { this.colouredBy = Number(event.target.value); this.draw(this.paths, this.axes, this.at); },
+    }, this.runs.choices.map((place) => [String(place), this.runs.names[place]]), String(this.runs.place))));
   }
 }
 
-const mode = (path) => (path.index.length <= MARKED ? "lines+markers" : "lines");
+/** What a style is kept for: the first quantity of a path, whichever it is, or another. */
+const keyOf = (id, ordinate, place) => (place === 0 ? id : `${id} ${ordinate}`);

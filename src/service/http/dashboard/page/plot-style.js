@@ -3,14 +3,16 @@
 import { verbatim } from "./words.js";
 
 const dark = matchMedia("(prefers-color-scheme: dark)");
-const COLOURS = ["#3486cc", "#d2691e", "#2e9a5b", "#a44fb0", "#c23b4e", "#7f7a1f", "#1f9aa3", "#7a6a5d"];
+/** Orange is that of bifurcation points, and so the last. */
+const COLOURS = ["#3486cc", "#2e9a5b", "#a44fb0", "#c23b4e", "#7f7a1f", "#1f9aa3", "#7a6a5d", "#d2691e"];
 
 /** Dashes: the name in Plotly, and the lengths of lines and gaps for a background in CSS. */
 const DASHES = [["solid", []], ["dash", [6, 3]], ["dot", [2, 2]], ["dashdot", [6, 2, 2, 2]]];
 
 export const colourOf = (place) => COLOURS[place % COLOURS.length];
 /** The dash of a line, which changes when the colours repeat. */
-export const dashOf = (place) => DASHES[Math.floor(place / COLOURS.length) % DASHES.length][0];
+export const dashAt = (place) => DASHES[place % DASHES.length][0];
+export const dashOf = (place) => dashAt(Math.floor(place / COLOURS.length));
 
 /** The style of a swatch with that colour and dash. */
 export function dashedSwatch(colour, dash) {
@@ -24,6 +26,15 @@ export function dashedSwatch(colour, dash) {
   return `background:${stops.length ? `repeating-linear-gradient(to right, ${stops.join(", ")})` : colour}`;
 }
 
+/** The colours and dashes of the stages of a single path are those of the picture of `arcslip solve --plot`, in turn. */
+const STAGES = 4;
+export const stageColour = (stage) => fromSheet(`--stage-${stage % STAGES}`);
+export const stageDash = (stage) => (stage % 2 ? "dash" : "solid");
+
+/** The band under a path that is known in closed form. */
+export const EXACT = { width: 7, opacity: 0.2 };
+
+export const isDark = () => dark.matches;
 export const onThemeChange = (listener) => dark.addEventListener("change", listener);
 
 /** A colour of the style sheet. */
@@ -34,9 +45,10 @@ export const CONFIGURATION = {
   toImageButtonOptions: { format: "svg" },
 };
 
+/** A title may have several lines. */
 export function axis(title) {
   return {
-    title: { text: verbatim(title), standoff: 8 }, gridcolor: fromSheet("--grid"), zerolinecolor: fromSheet("--zero"),
+    title: { text: verbatim(title).replaceAll("\n", "<br>"), standoff: 8 }, gridcolor: fromSheet("--grid"), zerolinecolor: fromSheet("--zero"),
     linecolor: fromSheet("--zero"), automargin: true, exponentformat: "power",
   };
 }

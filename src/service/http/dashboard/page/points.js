@@ -1,6 +1,7 @@
-// Names special points of a path: A, B, C, ... in order of appearance, as in the figures of papers.
+// The points of a path at which something happens. Those that the picture of `arcslip solve --plot` letters have the same
+// letters here: limit points, contact changes and ends, in order of appearance. Bifurcation points have none.
 
-const NAMED = new Set(["smooth_limit", "nonsmooth_limit", "smooth_bifurcation", "contact_change"]);
+const LETTERED = new Set(["smooth_limit", "nonsmooth_limit", "contact_change", "end"]);
 
 /** A to Z, then AA, AB and so on. */
 export function letters(number) {
@@ -11,26 +12,41 @@ export function letters(number) {
   return name;
 }
 
-/** Path to its named points so far: `{taken, stretch, found}`. Points are only ever added to a path. */
+/** Path to its points so far: `{taken, stretch, lettered, found}`. Points are only ever added to a path. */
 const known = new WeakMap();
 
 /**
  * Of a path's points that are not regular: [{name, index, kind, bifurcation, event}]. Of a stretch on which every increment has
- * more than one direction, the first is named.
+ * more than one direction, the first is among them. The name is empty where there is no letter.
  */
 export function named(path) {
-  if (!known.has(path)) known.set(path, { taken: 0, stretch: null, found: [] });
+  if (!known.has(path)) known.set(path, { taken: 0, stretch: null, lettered: 0, found: [] });
   const so = known.get(path);
   for (; so.taken < path.points.length; so.taken++) {
     const { index, point } = path.points[so.taken];
     const place = path.placeOf(index);
     const begins = point.bifurcation && so.stretch !== place - 1;
     if (point.bifurcation) so.stretch = place;
-    if (point.kind === "start" || point.kind === "end") continue;
-    if (NAMED.has(point.kind) || begins) {
-      const kind = point.kind === "regular" ? "bifurcation" : point.kind;
-      so.found.push({ name: letters(so.found.length), index, kind, bifurcation: point.bifurcation, event: point.event });
-    }
+    const isLettered = LETTERED.has(point.kind);
+    if (point.kind === "start" || !(isLettered || begins || point.kind === "smooth_bifurcation")) continue;
+    so.found.push({
+      name: isLettered ? letters(so.lettered++) : "", index, kind: isLettered ? point.kind : "bifurcation",
+      bifurcation: point.bifurcation, event: point.event,
+    });
   }
   return so.found;
+}
+
+/** Path to the places with more than one way on: `{taken, places}`. */
+const branching = new WeakMap();
+
+/** The places of a path's increments at which there is more than one way on. */
+export function branchingPlaces(path) {
+  if (!branching.has(path)) branching.set(path, { taken: 0, places: new Set() });
+  const so = branching.get(path);
+  for (; so.taken < path.points.length; so.taken++) {
+    const { index, point } = path.points[so.taken];
+    if (point.bifurcation) so.places.add(path.placeOf(index));
+  }
+  return so.places;
 }

@@ -3,12 +3,12 @@
 // jobs: ids drawn in the path plot; the first is the one whose structure and figures are shown. study, sweep: the id of one that
 // is shown in their place. abscissa and ordinate: a member of the increments or a JSON Pointer to one; null for the job's own
 // choice. at: the chosen increment, null for the last. turn: azimuth and elevation (degrees) from which a structure in space
-// is seen, null for the usual ones. figures: the diagnostics are open. status: the lists' filter. run: the form for a new run is
-// open; scene: what is in it; as: "study" or "sweep" where it queues one; again: how often the model of a job has been asked
+// is seen, null for the usual ones. figures: the diagnostics are open. status and search: what the lists show. run: the form for
+// a new run is open; scene: what is in it; as: "study" or "sweep" where it queues one; again: how often the model of a job has been asked
 // for, which is not in the address.
 
 const EMPTY = {
-  jobs: [], study: null, sweep: null, abscissa: null, ordinate: null, at: null, turn: null, figures: false, status: "", run: false, scene: "",
+  jobs: [], study: null, sweep: null, abscissa: null, ordinate: null, at: null, turn: null, figures: false, status: "", search: "", run: false, scene: "",
   as: "", again: 0,
 };
 /** What jobs, studies and sweeps can be filtered by. */
@@ -34,6 +34,7 @@ function ofAddress() {
     turn: angles(given.get("turn") ?? ""),
     figures: given.has("figures"),
     status: STATUSES.find((status) => status === given.get("status")) ?? "",
+    search: (given.get("search") ?? "").trim(),
     run: given.has("run"),
     scene: given.get("scene") ?? "",
     as: ["study", "sweep"].find((kind) => kind === given.get("as")) ?? "",
@@ -56,6 +57,7 @@ function address(state) {
   if (state.turn) parts.push(`turn=${state.turn.map(Math.round).join(",")}`);
   if (state.figures) parts.push("figures");
   if (state.status) parts.push(`status=${encodeURIComponent(state.status)}`);
+  if (state.search) parts.push(`search=${encodeURIComponent(state.search)}`);
   if (state.run) parts.push("run");
   if (state.run && state.scene) parts.push(`scene=${encodeURIComponent(state.scene)}`);
   if (state.run && state.as) parts.push(`as=${state.as}`);

@@ -6,12 +6,13 @@ import { button, element, fill, table } from "./dom.js";
 import { FindingsView } from "./findings-view.js";
 import { axis, colourOf } from "./plot-style.js";
 import { addressOfJob, openJobs } from "./state.js";
+import { placeWords, valueWords } from "./sweep-values.js";
 import { plainWords, short, verbatim } from "./words.js";
 
 /** Milliseconds between drawings while rows come in. */
 const AGAIN = 500;
 /** Paths that are drawn over one another at the most. */
-const OVERLAID = 12;
+const OVERLAID = 40;
 /** Runs that stand in the table; the others are in the files. */
 const LISTED = 500;
 
@@ -58,8 +59,8 @@ export class SweepView extends FindingsView {
     const lines = Object.groupBy(inOrder, ({ values }) => JSON.stringify(values.slice(1)));
     const traces = Object.values(lines).map((line, place) => ({
       type: "scatter", mode: "lines+markers",
-      name: line[0].values.slice(1).map((value, other) => `${verbatim(names[other + 1])} ${verbatim(shown(value))}`).join(", ") || "first limit load",
-      x: line.map(({ values }) => (isNumbers ? values[0] : verbatim(shown(values[0])))),
+      name: line[0].values.slice(1).map((value, other) => `${verbatim(names[other + 1])} ${verbatim(valueWords(value))}`).join(", ") || "first limit load",
+      x: line.map(({ values }) => (isNumbers ? values[0] : verbatim(valueWords(values[0])))),
       y: line.map(({ first_limit: limit }) => limit?.load_factor ?? null),
       text: line.map(({ run, first_limit: limit }) => `run ${run}${limit ? `, ${plainWords(limit.kind)}` : ""}`),
       hovertemplate: "%{text}<br>%{x}: %{y:.6g}<extra></extra>",
@@ -74,19 +75,10 @@ export class SweepView extends FindingsView {
       element("div", { class: "actions" }, button(`Draw the paths of ${drawn.length === rows.length ? "all" : `the first ${drawn.length}`} runs`,
         () => openJobs(drawn.map(({ job }) => job)), { "data-key": "overlay", id: "overlay" })),
       table(["run", ...names, "limit load", "kind", "at increment", "ends", ""], rows.slice(0, LISTED).map((row) => [
-        row.run, ...row.values.map((value) => (typeof value === "number" ? value : shown(value))),
+        row.run, ...row.values.map((value) => (typeof value === "number" ? value : valueWords(value))),
         row.first_limit ? Number(short(row.first_limit.load_factor)) : null, row.first_limit ? plainWords(row.first_limit.kind) : null,
         row.first_limit?.increment ?? null, row.error ?? plainWords(row.stop_reason ?? row.status),
         element("a", { href: addressOfJob(row.job) }, "path")])),
       rows.length > LISTED ? element("p", { class: "quiet" }, `The first ${LISTED} of ${rows.length}; the files have all of them.`) : null);
   }
-}
-
-const shown = (value) => (typeof value === "string" ? value : JSON.stringify(value));
-
-/** A pointer as a reader would write it: `contacts[0].friction`. */
-function placeWords(pointer) {
-  const steps = pointer.split("/").slice(1).map((step) => step.replaceAll("~1", "/").replaceAll("~0", "~"));
-  const written = steps.map((step) => (/^\d+$/.test(step) ? `[${step}]` : `.${step}`)).join("").slice(1);
-  return written.replace(/^model\./, "");
 }

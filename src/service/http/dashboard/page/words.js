@@ -10,8 +10,13 @@ const STOPPED = {
   time_limit: "It has run as long as a job may; what is stored stands.",
   storage_limit: "It has stored as much as a job may; what is stored stands.",
 };
+/** Stop reasons as ends of a path, in a word or two. Few of them are mistakes: a mechanism is what a path may well end in. */
+const ENDED = {
+  max_increments: "all increments used", no_direction: "no direction on", step_underflow: "step too short",
+  storage_limit: "storage limit", time_limit: "time limit",
+};
 const STATUS = {
-  queued: "waits in the queue", running: "is running", completed: "completed", stopped: "stopped: the path cannot go on",
+  queued: "waits in the queue", running: "is running", completed: "completed", stopped: "has ended where its path does",
   cancelled: "cancelled", failed: "failed", deleted: "has been deleted",
 };
 const KINDS = {
@@ -27,6 +32,9 @@ export const verbatim = (text) => String(text).replaceAll("&", "&amp;").replaceA
 /** A name of the interface as plain words. */
 export const plainWords = (name) => String(name).replaceAll("_", " ");
 export const statusWords = (status) => STATUS[status] ?? status;
+/** The status of a job, a study or a sweep in a few words; of a path that stopped, what ended it. */
+export const statusOf = ({ status, stop_reason: reason }) =>
+  (status === "stopped" ? `ended: ${ENDED[reason] ?? plainWords(reason ?? "path")}` : status);
 export const kindWords = (kind) => KINDS[kind] ?? plainWords(kind);
 /** The description of a named point: its kind, and whether it is a bifurcation. */
 export const pointWords = ({ kind, bifurcation }) =>

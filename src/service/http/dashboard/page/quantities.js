@@ -1,0 +1,130 @@
+// The quantities that are recorded at each increment: the names of their columns, their words and units, and whether a job
+// records them.
+
+const COMPONENTS = "xyz";
+/** Of these many parts the service records all unless told otherwise. */
+const USUAL = { contacts: 100, elements: 200, supports: 200 };
+
+/** Quantities that every job records: name to words. */
+export const PLAIN = {
+  load_factor: "load factor", arc_length: "arc length", step: "step", index: "increment",
+  "/energy/dissipated": "dissipated energy", "/energy/strain": "strain energy", "/energy/external_work": "external work",
+};
+
+/** Words of the members of contacts and elements, with the power of units that each has. */
+const MEMBERS = {
+  gap: ["gap", "length"], normal_reaction: ["normal reaction", "force"], tangential_reaction: ["tangential reaction", "force"],
+  reaction: ["reaction", "force"], slip: ["slip of the increment", "length"], slip_total: ["slip in total", "length"],
+  axial_force: ["axial force", "force"], force: ["force", "force"],
+};
+
+export const escaped = (name) => name.replaceAll("~", "~0").replaceAll("/", "~1").replaceAll(",", "~2");
+export const unescaped = (step) => step.replaceAll("~2", ",").replaceAll("~1", "/").replaceAll("~0", "~");
+
+/** The names in the state's `ordinate`, which has commas between them. */
+export const ordinatesIn = (text) => [...new Set((text ?? "").split(",").filter(Boolean))];
+
+/** The column of a displacement of a node. */
+export const displacement = (node, component) => `/displacements/${escaped(node)}/${component}`;
+
+/** The parts of a column's name: what it is of, the key there, and the steps below. */
+function partsOf(name) {
+  const [, of, key, ...steps] = (name ?? "").split("/");
+  return { of, key: key === undefined ? undefined : unescaped(key), steps };
+}
+
+/** The node and the component of a column; null for other columns. */
+export function ofDisplacement(name) {
+  const { of, key, steps } = partsOf(name);
+  return of === "displacements" && steps.length === 1 && /^[012]$/.test(steps[0])
+    ? { node: key, component: Number(steps[0]) } : null;
+}
+
+/** What a job records of each kind: nodes and supports by name, elements and contacts as their places in the model, in the
+ *  order in which they stand in an increment; null where that order is not the same in each. */
+export function recordedParts({ model, analysis }) {
+  const record = analysis?.record ?? {};
+  const chosen = (kind, all, placeOf) => {
+    const asked = record[kind] ?? (all.length > USUAL[kind] ? (kind === "contacts" ? "in_reach" : "none") : "all");
+    if (asked === "in_reach") return null;
+    if (Array.isArray(asked)) return asked.map(placeOf).filter((found) => found !== -1).sort((a, b) => a - b);
+    return asked === "none" ? [] : all.map((_, place) => place);
+  };
+  const supported = Object.keys(model.supports ?? {});
+  const elements = model.elements ?? [];
+  const contacts = model.contacts ?? [];
+  return {
+    displacements: Array.isArray(record.nodes) ? record.nodes : Object.keys(model.nodes),
+    supports: chosen("supports", supported, (name) => supported.indexOf(name))?.map((place) => supported[place]) ?? [],
+    elements: chosen("elements", elements, (one) =>
+      (typeof one === "number" ? one : elements.findIndex(({ name }) => name === one))),
+    contacts: chosen("contacts", contacts, (one) =>
+      contacts.findIndex(({ node, obstacle }) => node === one.node && obstacle === one.obstacle)),
+  };
+}
+
+/** Whether the increments of a job with that request have such a member. */
+export function isRecorded(name, request) {
+  if (name in PLAIN) return true;
+  const { of, key, steps } = partsOf(name);
+  const { model } = request;
+  const isComponent = (step, many = model.dimension) => /^[012]$/.test(step ?? "") && Number(step) < many;
+  if (of === "applied_forces") return isComponent(key) && steps.length === 0;
+  if (of === "diagnostics" || of === "measure") return /^[a-z_]+$/.test(key ?? "") && steps.length === 0;
+  const parts = recordedParts(request)[of] ?? [];
+  if (of === "displacements" || of === "supports") return parts.includes(key) && steps.length === 1 && isComponent(steps[0]);
+  if (!(of === "elements" || of === "contacts") || !(Number(key) < parts.length)) return false;
+  return steps[0] in MEMBERS && (steps.length === 1 || (steps.length === 2 && isComponent(steps[1])));
+}
+
+export function elementWords(model, place) {
+  const one = model.elements?.[place];
+  if (!one) return `element ${place}`;
+  return one.name ?? `${one.kind} ${place} (${(one.nodes ?? []).join("–")})`;
+}
+
+export function contactWords(model, place) {
+  const one = model.contacts?.[place];
+  return one ? `${one.node} on ${one.obstacle}` : `contact ${place}`;
+}
+
+/** A quantity in words; with a request, its unit in brackets where the model has labels of units. */
+export function quantityWords(name, request = null) {
+  const units = request?.model?.units;
+  const labels = powersOf(name).map((power) => units?.[power]);
+  return wordsOf(name, request) + (labels.length && labels.every(Boolean) ? ` [${labels.join(" ")}]` : "");
+}
+
+function wordsOf(name, request) {
+  if (name in PLAIN) return PLAIN[name];
+  const { of, key, steps } = partsOf(name);
+  const component = COMPONENTS[steps.at(-1)] ?? "";
+  if (of === "displacements") return `displacement ${component} of ${key}`;
+  if (of === "supports") return `reaction ${component} of the support of ${key}`;
+  if (of === "applied_forces") return `applied force ${COMPONENTS[key]}, sum`;
+  if (of === "diagnostics" || of === "measure") return `${of}: ${key.replaceAll("_", " ")}`;
+  if (of !== "elements" && of !== "contacts") return name;
+  const place = request ? recordedParts(request)[of]?.[Number(key)] ?? Number(key) : Number(key);
+  const model = request?.model ?? {};
+  const whose = of === "elements" ? elementWords(model, place) : contactWords(model, place);
+  return `${MEMBERS[steps[0]]?.[0] ?? steps[0]}${along(steps)} of ${whose}`;
+}
+
+/** Tangents have numbers, axes have letters. */
+function along([member, component]) {
+  if (component === undefined) return "";
+  const isTangential = member !== "reaction" && member !== "force";
+  return isTangential ? ` (tangent ${Number(component) + 1})` : ` ${COMPONENTS[component]}`;
+}
+
+/** The powers of units that a quantity has. */
+function powersOf(name) {
+  const { of, steps } = partsOf(name);
+  if (of === "energy") return ["force", "length"];
+  if (of === "displacements") return ["length"];
+  if (of === "supports" || of === "applied_forces") return ["force"];
+  return of === "elements" || of === "contacts" ? [MEMBERS[steps[0]]?.[1]].filter(Boolean) : [];
+}
+
+/** What two quantities have to share to be drawn along one axis. */
+export const scaleOf = (name) => powersOf(name).join(" ") || (partsOf(name).of ?? name);

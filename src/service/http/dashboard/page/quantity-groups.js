@@ -1,0 +1,84 @@
+// All quantities that a job records, in groups, to choose from.
+
+import { contactWords, displacement, elementWords, escaped, PLAIN, quantityWords, recordedParts } from "./quantities.js";
+
+const LETTERS = "xyz";
+const ACCURACY = [
+  "/diagnostics/residual", "/diagnostics/complementarity", "/diagnostics/energy_error", "/diagnostics/error_estimate",
+  "/measure/equilibrium", "/measure/contact", "/measure/cone", "/measure/friction", "/diagnostics/elapsed_s",
+  "/diagnostics/factorisations", "/diagnostics/newton_iterations",
+];
+
+/**
+ * `[{title, parts, keys, names}]`: `keys` are nodes, elements or contacts and `names` what these are called; `parts` is
+ * `[[steps below, words]]`. A group without keys has the names of its columns as parts.
+ */
+export function quantityGroups(request) {
+  const { model } = request;
+  const recorded = recordedParts(request);
+  const components = [...LETTERS.slice(0, model.dimension)];
+  const axes = (before, words) => components.map((letter, place) => [`${before}${place}`, `${words}${letter}`]);
+  const plain = (names) => names.map((name) => [name, quantityWords(name)]);
+  return [
+    { title: "Path", parts: plain(["load_factor", "arc_length", "step", "index"]) },
+    { title: "Energies", parts: plain(Object.keys(PLAIN).filter((name) => name.startsWith("/energy/"))) },
+    { title: "Displacements", of: "displacements", parts: axes("", ""), ...namedBy(recorded.displacements) },
+    { title: "Reactions of supports", of: "supports", parts: axes("", "reaction "), ...namedBy(recorded.supports) },
+    ...elementGroups(recorded.elements ?? [], model, axes),
+    ...contactGroups(recorded.contacts ?? [], model, axes),
+    { title: "Applied forces, sum", parts: plain(components.map((_, place) => `/applied_forces/${place}`)) },
+    { title: "Accuracy and work", parts: plain(ACCURACY) },
+  ].filter(({ keys }) => keys === undefined || keys.length > 0);
+}
+
+const namedBy = (names) => ({ keys: names, names });
+
+function elementGroups(places, model, axes) {
+  const of = (kind) => places.map((place, row) => [place, row]).filter(([place]) => model.elements?.[place]?.kind === kind);
+  const group = (title, kind, parts) => {
+    const found = of(kind);
+    return {
+      title, of: "elements", parts, keys: found.map(([, row]) => String(row)),
+      names: found.map(([place]) => elementWords(model, place)),
+    };
+  };
+  return [
+    group("Forces of bars", "bar", [["axial_force", "axial force"]]),
+    group("Forces of springs", "spring", axes("force/", "force ")),
+  ];
+}
+
+function contactGroups(places, model, axes) {
+  const tangents = (member, words) => Array.from({ length: model.dimension - 1 },
+    (_, place) => [`${member}/${place}`, model.dimension === 2 ? words : `${words} (tangent ${place + 1})`]);
+  const parts = [
+    ["gap", "gap"], ["normal_reaction", "normal reaction"], ...tangents("tangential_reaction", "tangential reaction"),
+    ...axes("reaction/", "reaction "), ...tangents("slip", "slip of the increment"), ...tangents("slip_total", "slip in total"),
+  ];
+  return [{
+    title: "Contacts", of: "contacts", parts, keys: places.map((_, row) => String(row)),
+    names: places.map((place) => contactWords(model, place)),
+  }];
+}
+
+/** The column of a part of a key of a group. */
+export const columnOf = ({ of }, key, part) => (of === "displacements" ? displacement(key, part) : `/${of}/${escaped(key)}/${part}`);
+
+/** What of the model is not recorded, or cannot be drawn over the path, in sentences. */
+export function notRecordedWords(request) {
+  const { model, analysis } = request;
+  const recorded = recordedParts(request);
+  const part = (few, all, words) => (few < all ? `${few} of ${all} ${words}` : null);
+  const parts = [
+    part(recorded.displacements.length, Object.keys(model.nodes).length, "nodes"),
+    part(recorded.supports.length, Object.keys(model.supports ?? {}).length, "supports"),
+    part(recorded.elements?.length ?? 0, model.elements?.length ?? 0, "elements"),
+    recorded.contacts ? part(recorded.contacts.length, model.contacts?.length ?? 0, "contacts") : null,
+  ].filter(Boolean);
+  const every = analysis?.record?.every ?? 1;
+  return [
+    parts.length ? `Recorded, and so to be chosen: ${parts.join(", ")}.` : null,
+    recorded.contacts === null ? "Contacts are recorded where they are in reach of the path; they cannot be drawn over it." : null,
+    every > 1 ? `Of the regular increments one in ${every} is recorded.` : null,
+  ].filter(Boolean).join(" ");
+}
