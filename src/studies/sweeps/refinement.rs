@@ -12,7 +12,7 @@ const LEAST_CHANGE: f64 = 0.5;
 const SHORTEST: f64 = 1e-9;
 
 /// An interval between two neighbouring values.
-struct Interval {
+struct ParameterInterval {
     middle: f64,
     width: f64,
     /// Change of the response; infinite where it appears, disappears, or changes from one word to another.
@@ -44,9 +44,9 @@ pub fn further_values(variation: &Variation, rows: &[Row], most: usize) -> Vec<V
     known.dedup_by(|one, other| one.0 == other.0);
     let (Some(first), Some(last)) = (known.first(), known.last()) else { return Vec::new() };
     let shortest = SHORTEST * (last.0 - first.0);
-    let mut intervals: Vec<Interval> = known
+    let mut intervals: Vec<ParameterInterval> = known
         .windows(2)
-        .map(|pair| Interval {
+        .map(|pair| ParameterInterval {
             middle: (pair[0].0 + pair[1].0) / 2.0,
             width: pair[1].0 - pair[0].0,
             change: change(&pair[0].1, &pair[1].1),

@@ -14,29 +14,29 @@ use serde_json::Value;
 #[derive(Debug)]
 pub struct ResponseFinder {
     table: Table,
-    sought: IndexMap<String, Sought>,
+    sought: IndexMap<String, SoughtResponse>,
     /// The increment before, in this table's columns.
-    before: Option<Before>,
+    before: Option<PreviousIncrement>,
 }
 
 #[derive(Debug)]
-struct Before {
+struct PreviousIncrement {
     stage: std::sync::Arc<str>,
     values: Vec<Value>,
 }
 
 /// A response, and what is found of it so far.
 #[derive(Debug)]
-struct Sought {
+struct SoughtResponse {
     /// The column of its value.
     column: usize,
-    at: Place,
+    at: ResponseLocation,
     stage: Option<String>,
     found: Option<Value>,
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Place {
+enum ResponseLocation {
     FirstLimit,
     LargestLoad { so_far: f64 },
     FirstSlip,
@@ -56,7 +56,7 @@ impl ResponseFinder {
         let mut mistakes = Vec::new();
         let mut sought = IndexMap::with_capacity(responses.len());
         for (name, response) in responses {
-            match Sought::new(response, request, &names) {
+            match SoughtResponse::new(response, request, &names) {
                 Ok(found) => {
                     sought.insert(name.clone(), found);
                 }
@@ -82,17 +82,17 @@ impl ResponseFinder {
                 sought.look(increment, &values, before.as_deref());
             }
         }
-        self.before = Some(Before { stage: increment.stage.clone(), values });
+        self.before = Some(PreviousIncrement { stage: increment.stage.clone(), values });
     }
 
     /// The responses by their names, null where the path does not reach the place; `None` where none are sought.
     pub fn found(self) -> Option<IndexMap<String, Value>> {
-        let found = |(name, sought): (String, Sought)| (name, sought.found.unwrap_or_default());
+        let found = |(name, sought): (String, SoughtResponse)| (name, sought.found.unwrap_or_default());
         (!self.sought.is_empty()).then(|| self.sought.into_iter().map(found).collect())
     }
 }
 
-impl Sought {
+impl SoughtResponse {
     /// The member of the response that is wrong, and why.
     fn new(response: &Response, request: &JobRequest, names: &[String]) -> Result<Self, (&'static str, String)> {
         let column = |member: &'static str, name: &str| {
@@ -101,19 +101,21 @@ impl Sought {
             found.ok_or_else(|| (member, format!("the path has no column {}{}", quoted(name), known())))
         };
         let at = match &response.at {
-            ResponsePlace::Named(NamedPlace::FirstLimit) => Place::FirstLimit,
-            ResponsePlace::Named(NamedPlace::LargestLoad) => Place::LargestLoad { so_far: f64::NEG_INFINITY },
+            ResponsePlace::Named(NamedPlace::FirstLimit) => ResponseLocation::FirstLimit,
+            ResponsePlace::Named(NamedPlace::LargestLoad) => {
+                ResponseLocation::LargestLoad { so_far: f64::NEG_INFINITY }
+            }
             ResponsePlace::Named(NamedPlace::FirstSlip) if !names.iter().any(|name| name.ends_with(".status")) => {
                 return Err(("/at", "no contact is recorded, so that no slip can be seen".to_owned()));
             }
-            ResponsePlace::Named(NamedPlace::FirstSlip) => Place::FirstSlip,
-            ResponsePlace::Named(NamedPlace::FirstContactChange) => Place::FirstContactChange,
-            ResponsePlace::Named(NamedPlace::End) => Place::End,
+            ResponsePlace::Named(NamedPlace::FirstSlip) => ResponseLocation::FirstSlip,
+            ResponsePlace::Named(NamedPlace::FirstContactChange) => ResponseLocation::FirstContactChange,
+            ResponsePlace::Named(NamedPlace::End) => ResponseLocation::End,
             ResponsePlace::Reached(reached) if !reached.reaches.is_finite() => {
                 return Err(("/at/reaches", format!("found {}; a finite number is expected", reached.reaches)));
             }
             ResponsePlace::Reached(reached) => {
-                Place::Reached { column: column("/at/value", &reached.value)?, number: reached.reaches }
+                ResponseLocation::Reached { column: column("/at/value", &reached.value)?, number: reached.reaches }
             }
         };
         if let Some(stage) = &response.stage {
@@ -128,23 +130,23 @@ impl Sought {
     fn look(&mut self, increment: &Increment, values: &[Value], before: Option<&[Value]>) {
         let value = |values: &[Value]| values.get(self.column).cloned();
         let here = match &mut self.at {
-            Place::LargestLoad { so_far } if increment.load_factor > *so_far => {
+            ResponseLocation::LargestLoad { so_far } if increment.load_factor > *so_far => {
                 *so_far = increment.load_factor;
                 value(values)
             }
-            Place::End => value(values),
+            ResponseLocation::End => value(values),
             _ if self.found.is_some() => None,
-            Place::LargestLoad { .. } => None,
-            Place::FirstLimit => LimitLoad::at(increment).and_then(|_| value(values)),
-            Place::FirstContactChange => {
+            ResponseLocation::LargestLoad { .. } => None,
+            ResponseLocation::FirstLimit => LimitLoad::at(increment).and_then(|_| value(values)),
+            ResponseLocation::FirstContactChange => {
                 let changes = matches!(increment.point.kind, PointKind::ContactChange | PointKind::NonsmoothLimit);
                 changes.then(|| value(values)).flatten()
             }
-            Place::FirstSlip => {
+            ResponseLocation::FirstSlip => {
                 let slips = increment.contacts.iter().any(|contact| contact.status == Status::Slip);
                 slips.then(|| value(before.unwrap_or(values))).flatten()
             }
-            Place::Reached { column, number } => reached(*column, *number, self.column, values, before),
+            ResponseLocation::Reached { column, number } => reached(*column, *number, self.column, values, before),
         };
         if here.is_some() {
             self.found = here;
