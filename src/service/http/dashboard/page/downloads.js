@@ -23,7 +23,8 @@ async function everyIncrement(id) {
   return new Blob([`{"increments": [\n${parts.join(",\n")}\n]}\n`], { type: "application/json" });
 }
 
-function save(blob, name) {
+/** Saves bytes as a file of that name. */
+export function save(blob, name) {
   const address = URL.createObjectURL(blob);
   const link = document.createElement("a");
   link.href = address;

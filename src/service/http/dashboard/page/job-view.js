@@ -2,6 +2,7 @@
 // between its parts.
 
 import { isGivenUp } from "./api.js";
+import { contactsTable } from "./contacts-table.js";
 import { Diagnostics } from "./diagnostics.js";
 import { Directions } from "./directions.js";
 import { atMostEvery, byId, onceAFrame } from "./dom.js";
@@ -37,7 +38,7 @@ export class JobView {
       axes: (axes) => change(axes),
     });
     this.structure = new StructurePlot(byId("structure"), {
-      chosen, pointedAt: (yes) => this.pathPlot.pointAt(yes), turned: (turn) => change({ turn }),
+      chosen, pointedAt: (yes) => this.pathPlot.pointAt(yes), turned: (turn) => change({ turn }), shown: contactsTable(byId("contacts")),
     }, state().turn);
     this.directions = new Directions(byId("directions"), {
       chosen,
