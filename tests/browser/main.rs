@@ -8,4 +8,6 @@ mod large;
 mod manual;
 mod pictures;
 mod states;
+mod structure;
+mod values;
 mod views;

@@ -20,7 +20,8 @@ class Reading {
 
   /** The members of which there is nothing to say; `why(value, name)`: what is wrong, null if nothing is. */
   keep(given, what, why) {
-    return Object.fromEntries(membersOf(given).filter(([name, value]) => this.isRight(`${what} “${name}”`, why(value, name))));
+    const isRight = ([name, value]) => this.isRight(`${what} “${name}”`, why(value, name));
+    return Object.fromEntries(membersOf(given).filter(isRight));
   }
 
   isRight(what, wrong) {
@@ -47,7 +48,8 @@ export function drawableModel(text) {
   const reading = new Reading(given.dimension);
   const nodes = reading.keep(given.nodes, "The node", (place) => reading.vectorOr(place));
   if (Object.keys(nodes).length === 0) return nothing(...bounded(reading.problems), "There is no node that can be drawn");
-  const model = { ...parts(reading, given, nodes), dimension: given.dimension, nodes, units: isObject(given.units) ? given.units : {} };
+  const units = isObject(given.units) ? given.units : {};
+  const model = { ...parts(reading, given, nodes), dimension: given.dimension, nodes, units };
   return { model, problems: bounded(reading.problems) };
 }
 

@@ -22,10 +22,12 @@ export class ContactDrawing {
     const drawn = contacts.filter(({ node }) => now.has(node));
     const closed = drawn.filter(({ status }) => status !== "free");
     const marked = drawn.length > MARKED ? closed : drawn;
+    const lacking = contacts.length - drawn.length;
     if (marked.length < drawn.length) detail.leave(`${drawn.length - marked.length} free contacts have no mark`);
-    if (drawn.length < contacts.length) detail.leave(`${contacts.length - drawn.length} contacts of nodes that are not recorded are not drawn`);
+    if (lacking > 0) detail.leave(`${lacking} contacts of nodes that are not recorded are not drawn`);
     for (const contact of marked) this.mark(contact);
-    if (closed.some((contact) => this.frictionOf(contact) > 0) && detail.hasCones(closed.length)) closed.forEach((contact) => this.cone(contact));
+    const rough = closed.filter((contact) => this.frictionOf(contact) > 0);
+    if (rough.length && detail.hasCones(rough.length)) rough.forEach((contact) => this.cone(contact));
     const pushed = closed.map((contact) => [contact, this.reaction(contact)]).filter(([, force]) => length(force) > 0);
     for (const [contact, force] of detail.arrows(pushed, "reactions")) this.arrow(contact, force);
     const slipping = closed.map((contact) => [contact, this.along(contact, contact.slip)])
@@ -55,16 +57,14 @@ export class ContactDrawing {
   mark(contact) {
     const [, symbol, colour] = STATES.find(([state]) => state === contact.status) ?? STATES[0];
     const size = this.detail.isLarge ? 7 : 11;
-    this.traces.marker(contact.status, this.now.get(contact.node), { symbol, color: fromSheet(colour), size },
-      contactWords(contact, this.units));
+    // The node tells its values.
+    this.traces.marker(contact.status, this.now.get(contact.node), { symbol, color: fromSheet(colour), size });
   }
 
   cone(contact) {
-    const coefficient = this.frictionOf(contact);
-    if (coefficient === 0) return;
     const { normal, tangents } = this.frame(contact);
-    this.traces.lines("cone", cone(this.now.get(contact.node), normal, tangents, coefficient, CONE * this.extent.size),
-      { color: fromSheet("--cone"), width: 1.5 });
+    const lines = cone(this.now.get(contact.node), normal, tangents, this.frictionOf(contact), CONE * this.extent.size);
+    this.traces.lines("cone", lines, { color: fromSheet("--cone"), width: 1.5 });
   }
 
   arrow(contact, force) {

@@ -61,6 +61,7 @@ export async function saveAnimation({ scene: { path }, view }, signal, say) {
   }
   const name = nameOf(scene, null, "png");
   save(new Blob([animatedPng(pictures, PACE)], { type: "image/apng" }), name);
-  return `The animation has been saved as ${name}: ${pictures.length} pictures${stride > 1
-    ? `, of every ${stride}th increment of the ${path.index.length}` : ""}. Browsers play it; other programs may show its first picture.`;
+  const leftOut = stride > 1 ? `, of every ${stride}th of the ${path.index.length} increments` : "";
+  return `The animation has been saved as ${name}: ${pictures.length} pictures${leftOut}. `
+    + "Browsers play it; other programs may show its first picture.";
 }

@@ -6,8 +6,9 @@ import { components, measured } from "./units.js";
 
 const { plus } = vector;
 const AXES = "xyz";
-/** The height of the triangle of a support, as a part of the extent. */
+/** The height of the triangle of a support, and of one in a large structure, as parts of the extent. */
 const SUPPORT = 0.035;
+const SMALL = 0.015;
 
 /** Lines on a contact. */
 export function contactWords(contact, units) {
@@ -31,7 +32,7 @@ export class NodeDrawing {
   /** A triangle for each component that is held, with its tip at the node. */
   supports() {
     const { model, traces, now, extent } = this;
-    const height = SUPPORT * extent.size;
+    const height = (this.detail.isLarge ? SMALL : SUPPORT) * extent.size;
     const line = { color: fromSheet("--text"), width: this.detail.isLarge ? 1 : 1.5 };
     for (const [name, held] of Object.entries(model.supports ?? {})) {
       const place = now.get(name);

@@ -74,21 +74,22 @@ export class StructureTraces {
     this.add(trace, outline);
   }
 
-  /** An arrow; values, if there are any, are shown at its tail, or at its head where `isAtHead` says so. */
+  /** An arrow; its values, if there are any, are shown at that end which is not at a node. */
   arrow(name, from, to, color, { words = "", isAtHead = false } = {}) {
     const trace = this.trace(name, () => ({
-      mode: "lines+markers", line: { color, width: 2 },
+      mode: "lines+markers", line: { color, width: 2 }, hoverinfo: "skip",
       marker: { symbol: "arrow", angleref: "previous", size: [], color },
     }));
-    this.add(trace, [from], isAtHead ? "" : words);
-    this.add(trace, [to], isAtHead ? words : "");
+    this.add(trace, [from, to], words);
     this.interrupt(trace);
+    if (words) this.unmarked("arrow values", isAtHead ? to : from, words);
     trace.marker.size.push(0, 12, 0);
   }
 
   marker(name, place, marker, words) {
     const trace = this.trace(name, () => ({
       mode: "markers", marker: { size: 11, line: { width: 2, color: marker.color }, ...marker },
+      ...(words ? {} : { hoverinfo: "skip" }),
     }));
     this.add(trace, [place], words);
   }
