@@ -3,10 +3,13 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod contacts;
 mod jobs;
 mod large;
 mod manual;
 mod pictures;
+mod playback;
+mod preview;
 mod states;
 mod structure;
 mod values;

@@ -15,10 +15,10 @@ export class ModelPreview {
   constructor() {
     this.picture = element("div", { class: "plot", id: "preview-plot" });
     this.said = element("ul", { class: "quiet left-out", id: "preview-said", "aria-live": "polite" });
-    this.seen = new StructureTurn(this.picture, null, { turned: () => {}, again: () => this.draw() });
+    this.seen = new StructureTurn(this.picture, null, { turned: () => {}, again: () => this.draw() }, "preview-");
     this.place = element("div", { id: "preview" }, element("h3", {}, "Preview"),
       element("p", { class: "quiet" }, "The model as it stands in the text, with the loads of all its stages at load factor 1."),
-      this.picture, this.said);
+      this.seen.sliders, this.picture, this.said);
     this.text = "";
     this.count = 0;
   }

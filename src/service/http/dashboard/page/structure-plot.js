@@ -115,6 +115,13 @@ export class StructurePlot {
     this.again();
   }
 
+  /** Plays or pauses for a key, if there is something to be played. */
+  play(event) {
+    if (!this.path) return;
+    event.preventDefault();
+    this.playback.toggle();
+  }
+
   /** Another view than the one that is played. */
   rest() {
     if (this.playback.isPlaying) this.playback.stop();
