@@ -78,6 +78,10 @@ async fn displacements_are_exaggerated_and_the_picture_says_how_much() {
     browser.until(&format!("{captions}[0]?.startsWith('displacements × 0.5')")).await;
     let found = browser.ask(&place).await;
     assert!(near(&found[0], -1.5 + 0.5 * right), "{found} {moved}");
+    browser.until("location.search.includes('exaggeration=0.5')").await;
+    let address = browser.page.current_url().await.expect("an address").to_string();
+    browser.visit(&address).await;
+    browser.until(&format!("{captions}[0]?.startsWith('displacements × 0.5')")).await;
     // A factor that is none changes nothing and is told.
     browser.put("#exaggeration", "-3").await;
     browser.until("document.querySelector('#structure [role=alert]').textContent.startsWith('The factor is')").await;

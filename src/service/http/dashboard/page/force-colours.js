@@ -20,10 +20,12 @@ export class ForceColours {
     this.model = model;
     this.zero = ROUNDING * (model.elements ?? []).reduce((sum, item) => Math.max(sum, item.axial_stiffness ?? 0), 0);
     this.most = most > this.zero ? most : 0;
+    // Asked for once, as it takes long for very many bars.
+    this.none = fromSheet("--zero");
   }
 
   of(force) {
-    if (Math.abs(force) <= this.zero || this.most === 0) return fromSheet("--zero");
+    if (Math.abs(force) <= this.zero || this.most === 0) return this.none;
     const place = Math.min(CLASSES - 1, Math.floor((Math.abs(force) / this.most) * CLASSES));
     return (force > 0 ? TENSION : COMPRESSION)[place];
   }

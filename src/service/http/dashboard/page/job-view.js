@@ -38,8 +38,8 @@ export class JobView {
       axes: (axes) => change(axes),
     });
     this.structure = new StructurePlot(byId("structure"), {
-      chosen, pointedAt: (yes) => this.pathPlot.pointAt(yes), turned: (turn) => change({ turn }), shown: contactsTable(byId("contacts")),
-    }, state().turn);
+      chosen, pointedAt: (yes) => this.pathPlot.pointAt(yes), seen: change, shown: contactsTable(byId("contacts")),
+    }, state());
     this.directions = new Directions(byId("directions"), {
       chosen,
       followed: (job) => { told.changed(); change({ jobs: [...state().jobs, job.id] }); },
@@ -86,7 +86,7 @@ export class JobView {
 
   /** From where the structure is seen, and whether the figures are open, as the address says: one may have gone back. */
   look() {
-    this.structure.seen.lookFrom(state().turn);
+    this.structure.lookAs(state());
     this.diagnostics.open(state().figures);
   }
 

@@ -21,16 +21,16 @@ const LEAST = 1e-300;
 export const nothingDrawn = () => ({ reaction: LEAST, load: LEAST, axial: 0 });
 
 /**
- * Traces of `increment` of a model. `turn`: from where it is seen; `exaggeration`: of displacements; `hasNames`: of nodes, null for
- * the usual; `extent` and `largest`: of what has been drawn so far, widened by this; `reached`: load factor that each stage came
- * to. Answers `{traces, leftOut}`, the latter sentences on what is not in the picture.
+ * Traces of `increment` of a model. `turn`: from where it is seen; `exaggeration`: of displacements; `hasNames`: of nodes, null
+ * for the usual; `extent` and `largest`: of what has been drawn so far, widened by this; `reached`: load factor that each stage
+ * came to. Answers `{traces, leftOut}`, the latter sentences on what is not in the picture.
  */
 export function structureDrawing(model, increment, view) {
   const { extent, largest, exaggeration } = view;
   const now = places(model, increment, exaggeration);
   extent.widen(now.values());
-  const traces = new StructureTraces(projection(model.dimension, view.turn));
   const detail = new Detail(model);
+  const traces = new StructureTraces(projection(model.dimension, view.turn), detail.isLarge);
   const units = unitsOf(model);
   const loads = loadsOf(model, increment, view.reached);
   const forces = elementForces(model, increment);

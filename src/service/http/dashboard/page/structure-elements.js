@@ -25,8 +25,11 @@ export class ElementDrawing {
       traces.lines("undeformed", before.length > 1 ? [before] : [], this.faint);
     } else if (ends.length === 1) {
       // To the ground, where its node was.
-      const words = [...named, `fixed at ${components(before[0], units.length)}`, `force ${components(force ?? [], units.force)}`];
-      if (!detail.isLarge) traces.marker("ground", before[0], { symbol: "x-thin", color: fromSheet("--faint"), size: 9 }, words);
+      const words = [
+        ...named, `fixed at ${components(before[0], units.length)}`, `force ${components(force ?? [], units.force)}`,
+      ];
+      const mark = { symbol: "x-thin", color: this.faint.color, size: 9 };
+      if (!detail.isLarge) traces.marker("ground", before[0], mark, words);
       traces.element("spring", [before[0], ends[0]], this.spring, words);
     } else {
       if (!detail.isLarge) traces.lines("undeformed", [before], this.faint);
@@ -36,7 +39,7 @@ export class ElementDrawing {
   }
 
   bar(ends, axial, named) {
-    const color = axial === null ? fromSheet("--faint") : this.colours.of(axial);
+    const color = axial === null ? this.faint.color : this.colours.of(axial);
     const force = axial === null ? "force not recorded" : `axial force ${measured(axial, this.units.force)}`;
     this.traces.element(`bar ${color}`, ends, { color, width: this.detail.lineWidth }, [...named, force]);
   }

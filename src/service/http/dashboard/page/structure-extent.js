@@ -1,5 +1,5 @@
-// The extent of a structure and of its picture: what has been shown so far counts, so that the picture does not jump from increment
-// to increment.
+// The extent of a structure and of its picture: what has been shown so far counts, so that the picture does not jump from
+// increment to increment.
 
 import { vector } from "./geometry.js";
 

@@ -13,9 +13,10 @@ const FINE = 2;
 const FRAMES = 90;
 const PACE = 100;
 
-const captionOf = (model, shown) => [
-  model.name, shown ? `increment ${shown.index}, stage “${shown.stage}”, load factor ${short(shown.load_factor)}` : "no load yet",
-].filter(Boolean).join(" · ");
+function captionOf(model, shown) {
+  const where = shown ? `increment ${shown.index}, stage “${shown.stage}”, load factor ${short(shown.load_factor)}` : "no load yet";
+  return [model.name, where].filter(Boolean).join(" · ");
+}
 
 /** The picture of an increment, with what it shows in words and on the ground of the page. */
 function imageOf(scene, view, shown, options) {

@@ -1,6 +1,7 @@
 // The key below the picture of a structure: what its lines, marks and arrows mean.
 
 import { element, fill } from "./dom.js";
+import { Detail } from "./structure-detail.js";
 
 /** State of a contact to the colour of its mark. */
 const STATES = [["free", "--free"], ["stick", "--stick"], ["slip", "--slip"]];
@@ -11,11 +12,12 @@ const sign = (colour, shape, words) =>
 
 /** Fills the key for what a model has. */
 export function structureKey(place, model) {
+  const { isLarge } = new Detail(model);
   const elements = model.elements ?? [];
   const contacts = model.contacts ?? [];
   const brings = (member) => model.stages.some((stage) => Object.keys(stage[member] ?? {}).length > 0);
   fill(place,
-    elements.some(({ kind }) => kind === "bar") ? swatch("border-color:var(--faint)", "undeformed", "dotted") : null,
+    elements.some(({ kind }) => kind === "bar") && !isLarge ? swatch("border-color:var(--faint)", "undeformed", "dotted") : null,
     elements.some(({ kind }) => kind === "spring") ? swatch("", "spring", "dashed") : null,
     Object.keys(model.supports ?? {}).length ? sign("--text", "△", "support") : null,
     brings("forces") ? sign("--load", "→", "load") : null,

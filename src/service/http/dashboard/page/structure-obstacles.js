@@ -5,12 +5,12 @@ import { frame, vector } from "./geometry.js";
 import { fromSheet } from "./plot-style.js";
 import { components } from "./units.js";
 
-const { plus, times, unit, dot } = vector;
+const { plus, unit, dot } = vector;
 /** Corners of the polygon that represents a circle, and of each side of the part of an obstacle. */
 const ROUND = 48;
 const SIDE = 16;
-/** How far a part goes beyond the feet, how deep it is drawn in a plane, and half its side where no node may touch it: as parts of
- *  the extent. */
+/** How far a part goes beyond the feet, how deep it is drawn in a plane, and half its side where no node may touch it: as parts
+ *  of the extent. */
 const BEYOND = 0.2;
 const DEEP = 0.07;
 const ALONE = 0.3;
@@ -70,16 +70,17 @@ export class ObstacleDrawing {
       traces.area([...edge, ...edge.map(below).reverse()], fromSheet("--ground"));
       return edge[SIDE / 2];
     }
+    const back = [...steps].reverse();
     const edges = [
       ...steps.map((step) => [between(first, step), second[0]]), ...steps.map((step) => [first[1], between(second, step)]),
-      ...steps.map((step) => [between(first, SIDE - step), second[1]]), ...steps.map((step) => [first[0], between(second, SIDE - step)]),
+      ...back.map((step) => [between(first, step), second[1]]), ...back.map((step) => [first[0], between(second, step)]),
     ].map(surface.on);
     traces.lines("obstacle", [edges], this.line, name);
     traces.area(edges, fromSheet("--ground"));
     return surface.on([between(first, SIDE / 2), between(second, SIDE / 2)]);
   }
 
-  /** A ball as a whole; answers its highest point. */
+  /** A ball as a whole; answers its centre. */
   ball(name, obstacle) {
     const { traces, model: { dimension } } = this;
     const center = plus(obstacle.center, this.moved.get(name) ?? []);
@@ -99,15 +100,15 @@ export class ObstacleDrawing {
   }
 }
 
-/** Coordinates along the surface of an obstacle: `along(place)` of a position, `on(coordinates)` the position that has them, and the
- *  normal there. */
+/** Coordinates along the surface of an obstacle: `along(place)` of a position, `on(coordinates)` the position that has them, and
+ *  `normalAt(place)`. */
 function surfaceOf(obstacle, near, moved) {
   const isPlane = obstacle.kind === "plane";
   const center = isPlane ? null : plus(obstacle.center, moved);
   const onBall = (place) => plus(center, unit(plus(place, center, -1)), obstacle.radius);
   const origin = isPlane ? plus(obstacle.point, moved) : onBall(near);
   const { tangents } = frame(obstacle, origin, moved);
-  const flat = (coordinates) => tangents.reduce((sum, tangent, axis) => plus(sum, tangent, coordinates[axis]), times(origin, 1));
+  const flat = (coordinates) => tangents.reduce((sum, tangent, axis) => plus(sum, tangent, coordinates[axis]), origin);
   return {
     along: (place) => tangents.map((tangent) => dot(plus(place, origin, -1), tangent)),
     on: (coordinates) => (isPlane ? flat(coordinates) : onBall(flat(coordinates))),

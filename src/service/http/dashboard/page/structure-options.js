@@ -6,14 +6,15 @@ import { button, element, fill } from "./dom.js";
 const SEEN = 0.1;
 
 export class StructureOptions {
-  /** Tells `changed()`; asks `fitted()` for the exaggeration at which displacements are seen. */
-  constructor({ changed, fitted }) {
-    this.exaggeration = 1;
+  /** Tells `changed()`; asks `fitted()` for the exaggeration at which displacements are seen; `exaggeration`: the
+   *  factor to begin with. */
+  constructor({ changed, fitted }, exaggeration) {
+    this.exaggeration = exaggeration;
     /** Whether nodes have their names; null for the usual. */
     this.hasNames = null;
     this.told = { changed };
     this.factor = element("input", {
-      type: "number", id: "exaggeration", min: 0, step: "any", value: 1, oninput: () => this.exaggerate(this.factor.value),
+      type: "number", id: "exaggeration", min: 0, step: "any", value: exaggeration, oninput: () => this.exaggerate(this.factor.value),
     });
     this.problem = element("span", { class: "bad", role: "alert" });
     this.names = element("input", {
@@ -21,7 +22,7 @@ export class StructureOptions {
     });
     this.place = element("div", { class: "choices" });
     fill(this.place, element("label", {}, "displacements × ", this.factor),
-      button("Fit", () => { this.factor.value = fitted(); this.exaggerate(this.factor.value); }, {
+      button("Fit", () => this.exaggerate(String(fitted())), {
         id: "fit-exaggeration", title: "Choose a factor at which the displacements are seen",
       }), element("label", {}, this.names, " names of nodes"), this.larger(), this.problem);
   }
@@ -40,6 +41,7 @@ export class StructureOptions {
     const isOne = text.trim() !== "" && Number.isFinite(factor) && factor >= 0;
     this.problem.textContent = isOne ? "" : "The factor is a number, 0 or more.";
     if (!isOne || factor === this.exaggeration) return;
+    if (Number(this.factor.value) !== factor) this.factor.value = text;
     this.exaggeration = factor;
     this.told.changed();
   }

@@ -23,15 +23,15 @@ export function structurePicture(model, increment, view) {
   const unit = unitsOf(model).length;
   const below = traces.some(({ name }) => name === "force scale") ? SCALE_HEIGHT : 0;
   const plain = (name) => ({ ...axis(isInSpace ? "" : headed(name, unit)), zeroline: false, visible: !isInSpace });
-  return {
-    traces, leftOut,
-    layout: layout({
-      margin: isInSpace ? { l: 8, r: 28, t: 30, b: 8 + below } : { l: 48, r: 28, t: 30, b: 40 + below },
-      dragmode: isInSpace ? false : "pan",
-      xaxis: { ...plain("x"), range: x }, yaxis: { ...plain("y"), range: y, scaleanchor: "x" },
-      annotations: [...said(view), ...(isInSpace ? triad(view.turn) : [])], uirevision: view.revision,
-    }),
-  };
+  const whole = layout({
+    margin: isInSpace ? { l: 8, r: 28, t: 30, b: 8 + below } : { l: 48, r: 28, t: 30, b: 40 + below },
+    dragmode: isInSpace ? false : "pan",
+    xaxis: { ...plain("x"), range: x }, yaxis: { ...plain("y"), range: y, scaleanchor: "x" },
+    annotations: [...said(view), ...(isInSpace ? triad(view.turn) : [])], uirevision: view.revision,
+  });
+  // Several lines.
+  whole.hoverlabel.align = "left";
+  return { traces, layout: whole, leftOut };
 }
 
 /** All that has been drawn, as it is seen from where it is looked at. */

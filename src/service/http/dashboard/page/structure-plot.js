@@ -14,9 +14,9 @@ import { kindWords, short } from "./words.js";
 const drawing = () => import("./structure-scene.js");
 
 export class StructurePlot {
-  /** Tells `chosen(index)`, `pointedAt(yes)`, `turned([azimuth, elevation])` and `shown(path, increment)`; `turn`: from where it
-   *  is seen, or null. */
-  constructor(panel, told, turn) {
+  /** Tells `chosen(index)`, `pointedAt(yes)`, `seen({turn} or {exaggeration})` as the reader changes it, and
+   *  `shown(path, increment)`; `turn` and `exaggeration` as the address has them. */
+  constructor(panel, told, { turn, exaggeration }) {
     this.told = told;
     this.path = null;
     this.playback = new Playback({
@@ -28,11 +28,11 @@ export class StructurePlot {
     this.left = element("ul", { class: "quiet left-out", "aria-label": "not in the picture" });
     this.key = element("ul", { class: "legend", "aria-label": "key" });
     this.again = onceAFrame(() => this.redraw());
-    this.seen = new StructureTurn(this.place, turn, { turned: told.turned, again: () => this.again() });
+    this.seen = new StructureTurn(this.place, turn, { turned: (angles) => told.seen({ turn: angles }), again: () => this.again() });
     this.options = new StructureOptions({
-      changed: () => { this.scene?.renew(this.options.exaggeration); this.again(); },
+      changed: () => this.optionsChanged(),
       fitted: () => this.scene?.fittedExaggeration(this.shown) ?? 1,
-    });
+    }, exaggeration);
     this.exports = new StructureExport({ scene: () => this.scene, view: () => this.view, shown: () => this.shown });
     fill(panel, element("h2", {}, "Structure"), this.playback.place, this.words, this.options.place, this.seen.sliders,
       this.place, this.key, this.left, this.exports.place);
@@ -113,6 +113,19 @@ export class StructurePlot {
   repaint() {
     if (this.path) this.controls();
     this.again();
+  }
+
+  optionsChanged() {
+    const { exaggeration } = this.options;
+    if (this.scene && this.scene.exaggeration !== exaggeration) this.scene.renew(exaggeration);
+    this.told.seen({ exaggeration });
+    this.again();
+  }
+
+  /** From where it is seen, and how exaggerated, as the address says: one may have gone back. */
+  lookAs({ turn, exaggeration }) {
+    this.seen.lookFrom(turn);
+    this.options.exaggerate(String(exaggeration));
   }
 
   /** Plays or pauses for a key, if there is something to be played. */

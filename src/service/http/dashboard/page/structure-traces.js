@@ -2,16 +2,17 @@
 
 import { verbatim } from "./words.js";
 
-/** Places of an element, between its ends, at which its values are shown by hovering. */
-const ALONG = [0.25, 0.5, 0.75];
+/** Places of an element, between its ends, at which its values are shown by hovering; fewer where there are very many. */
+const ALONG = { few: [0.25, 0.5, 0.75], many: [0.5] };
 
 /** Lines of text, each escaped. */
 const said = (words) => [words].flat().filter(Boolean).map(verbatim).join("<br>");
 
 export class StructureTraces {
-  /** `flat` projects a position onto the picture. */
-  constructor(flat) {
+  /** `flat` projects a position onto the picture; `isLarge`: there are very many of them. */
+  constructor(flat, isLarge) {
     this.flat = flat;
+    this.along = isLarge ? ALONG.many : ALONG.few;
     this.all = [];
     this.byName = new Map();
     /** The positions of all that has been drawn. */
@@ -57,7 +58,9 @@ export class StructureTraces {
     const trace = this.trace(name, () => ({ mode: "lines", line, hoverinfo: "skip" }));
     this.add(trace, [from, to], words);
     this.interrupt(trace);
-    for (const part of ALONG) this.unmarked("element values", from.map((value, axis) => value + part * (to[axis] - value)), words);
+    for (const part of this.along) {
+      this.unmarked("element values", from.map((value, axis) => value + part * (to[axis] - value)), words);
+    }
   }
 
   /** A position with values but without a mark. */
