@@ -8,10 +8,13 @@ import { plainWords, short } from "./words.js";
 const ROWS = 20;
 const SHOWN = [["", "all"], ["closed", "that touch"], ["stick", "that stick"], ["slip", "that slip"], ["free", "that are free"]];
 
-/** A table in that place; answers what shows an increment of a path in it. */
-export function contactsTable(panel) {
-  const made = new ContactsTable(panel);
-  return (path, increment) => made.show(path, increment);
+/** Place to its table, which keeps its page and filter. */
+const made = new WeakMap();
+
+/** Shows the contacts of an increment of a path in that place; null before the first increment. */
+export function showContacts(panel, path, increment) {
+  if (!made.has(panel)) made.set(panel, new ContactsTable(panel));
+  made.get(panel).show(path, increment);
 }
 
 class ContactsTable {
@@ -22,7 +25,6 @@ class ContactsTable {
     this.key = "";
   }
 
-  /** `increment`: null before the first one. */
   show(path, increment) {
     const { model } = path.request;
     const all = model.contacts?.length ?? 0;

@@ -2,7 +2,6 @@
 // between its parts.
 
 import { isGivenUp } from "./api.js";
-import { contactsTable } from "./contacts-table.js";
 import { Diagnostics } from "./diagnostics.js";
 import { Directions } from "./directions.js";
 import { atMostEvery, byId, onceAFrame } from "./dom.js";
@@ -38,7 +37,8 @@ export class JobView {
       axes: (axes) => change(axes),
     });
     this.structure = new StructurePlot(byId("structure"), {
-      chosen, pointedAt: (yes) => this.pathPlot.pointAt(yes), seen: change, shown: contactsTable(byId("contacts")),
+      chosen, pointedAt: (yes) => this.pathPlot.pointAt(yes), seen: change,
+      shown: async (...increment) => (await import("./contacts-table.js")).showContacts(byId("contacts"), ...increment),
     }, state());
     this.directions = new Directions(byId("directions"), {
       chosen,

@@ -4,7 +4,6 @@ import { isGivenUp } from "./api.js";
 import { element, fill, onceAFrame } from "./dom.js";
 import { CONFIGURATION } from "./plot-style.js";
 import { StructureExport } from "./structure-export.js";
-import { structureKey } from "./structure-key.js";
 import { StructureOptions } from "./structure-options.js";
 import { Playback } from "./structure-playback.js";
 import { StructureTurn } from "./structure-turn.js";
@@ -46,19 +45,13 @@ export class StructurePlot {
       this.shown = null;
       this.scene = null;
       this.rest();
-      this.controls();
+      this.seen.allow(path.request.model.dimension === 3);
     }
     return this.choose(at);
   }
 
   get view() {
     return { turn: this.seen.view, exaggeration: this.options.exaggeration, hasNames: this.options.hasNames };
-  }
-
-  controls() {
-    const { model } = this.path.request;
-    this.seen.allow(model.dimension === 3);
-    structureKey(this.key, model);
   }
 
   /** Another increment, or a path that has grown. */
@@ -111,7 +104,6 @@ export class StructurePlot {
 
   /** Draws again with the current colours of the page. */
   repaint() {
-    if (this.path) this.controls();
     this.again();
   }
 
@@ -147,6 +139,7 @@ export class StructurePlot {
     if (path !== this.path) return;
     if (this.scene?.path !== path) {
       this.scene = new StructureScene(path, this.options.exaggeration);
+      this.scene.key(this.key);
       this.options.allow(this.scene.detail);
     }
     const { shown } = this;

@@ -3,6 +3,7 @@
 import { nothingDrawn } from "./structure-drawing.js";
 import { Detail } from "./structure-detail.js";
 import { StructureExtent } from "./structure-extent.js";
+import { structureKey } from "./structure-key.js";
 import { fittedExaggeration } from "./structure-options.js";
 import { structurePicture } from "./structure-picture.js";
 
@@ -28,6 +29,11 @@ export class StructureScene {
     return structurePicture(this.model, increment ?? atRest(this.model), {
       extent, largest, reached: reached(path), revision: `${path.id} ${this.exaggeration}`, ...view,
     });
+  }
+
+  /** Says below the picture what is in it. */
+  key(place) {
+    structureKey(place, this.model);
   }
 
   fittedExaggeration(increment) {
