@@ -14,7 +14,8 @@ const FRAMES = 90;
 const PACE = 100;
 
 function captionOf(model, shown) {
-  const where = shown ? `increment ${shown.index}, stage “${shown.stage}”, load factor ${short(shown.load_factor)}` : "no load yet";
+  const where = !shown ? "no load yet"
+    : `increment ${shown.index}, stage “${shown.stage}”, load factor ${short(shown.load_factor)}`;
   return [model.name, where].filter(Boolean).join(" · ");
 }
 

@@ -1,10 +1,8 @@
 // The key below the picture of a structure: what its lines, marks and arrows mean.
 
 import { element, fill } from "./dom.js";
+import { STATES } from "./structure-contacts.js";
 import { Detail } from "./structure-detail.js";
-
-/** State of a contact to the colour of its mark. */
-const STATES = [["free", "--free"], ["stick", "--stick"], ["slip", "--slip"]];
 
 const swatch = (style, words, kind = "") => element("li", {}, element("span", { class: `swatch ${kind}`, style }), words);
 const sign = (colour, shape, words) =>
@@ -23,7 +21,7 @@ export function structureKey(place, model) {
     brings("forces") ? sign("--load", "→", "load") : null,
     brings("displacements") ? sign("--imposed", "→", "imposed displacement") : null,
     contacts.length ? [
-      ...STATES.map(([state, colour]) => swatch(`--colour:var(${colour})`, state, `state ${state}`)),
+      ...STATES.map(([state, , colour]) => swatch(`--colour:var(${colour})`, state, `state ${state}`)),
       sign("--text", "→", "reaction"),
       ...(contacts.some(({ friction }) => friction > 0)
         ? [sign("--slip", "→", "slip direction"), sign("--cone", "∨", "friction cone")] : []),

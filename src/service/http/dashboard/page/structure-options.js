@@ -14,7 +14,8 @@ export class StructureOptions {
     this.hasNames = null;
     this.told = { changed };
     this.factor = element("input", {
-      type: "number", id: "exaggeration", min: 0, step: "any", value: exaggeration, oninput: () => this.exaggerate(this.factor.value),
+      type: "number", id: "exaggeration", min: 0, step: "any", value: exaggeration,
+      oninput: () => this.exaggerate(this.factor.value),
     });
     this.problem = element("span", { class: "bad", role: "alert" });
     this.names = element("input", {

@@ -27,7 +27,8 @@ export class StructurePlot {
     this.left = element("ul", { class: "quiet left-out", "aria-label": "not in the picture" });
     this.key = element("ul", { class: "legend", "aria-label": "key" });
     this.again = onceAFrame(() => this.redraw());
-    this.seen = new StructureTurn(this.place, turn, { turned: (angles) => told.seen({ turn: angles }), again: () => this.again() });
+    const turned = (angles) => told.seen({ turn: angles });
+    this.seen = new StructureTurn(this.place, turn, { turned, again: () => this.again() });
     this.options = new StructureOptions({
       changed: () => this.optionsChanged(),
       fitted: () => this.scene?.fittedExaggeration(this.shown) ?? 1,
@@ -153,7 +154,8 @@ export class StructurePlot {
     const nodes = Object.keys(this.path.request.model.nodes).length;
     const recorded = shown ? Object.keys(shown.displacements).length : nodes;
     const notRecorded = recorded < nodes ? `. Of ${nodes} nodes ${recorded} are recorded; bars at the others are not drawn` : "";
-    this.words.textContent = !shown ? "No increment yet: the structure as the model has it."
+    this.words.textContent = !shown
+      ? "No increment yet: the structure as the model has it, with the loads of all its stages at load factor 1."
       : `Increment ${shown.index}, ${kindWords(shown.point.kind)}, stage “${shown.stage}”, load factor `
       + `${short(shown.load_factor)}${shown.point.event ? `: ${shown.point.event}` : ""}${notRecorded}`;
     const sentences = [...leftOut.map((words) => `${words}.`), this.playback.words].filter(Boolean);

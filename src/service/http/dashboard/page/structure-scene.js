@@ -25,7 +25,9 @@ export class StructureScene {
 
   /** The picture of an increment, null for the structure before the first one. */
   picture(increment, view) {
-    const { path, extent, largest } = this;
+    const { path, extent } = this;
+    // Loads at load factor 1 say nothing about those of the path.
+    const largest = increment ? this.largest : nothingDrawn();
     return structurePicture(this.model, increment ?? atRest(this.model), {
       extent, largest, reached: reached(path), revision: `${path.id} ${this.exaggeration}`, ...view,
     });
