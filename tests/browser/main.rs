@@ -3,11 +3,16 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod contacts;
 mod jobs;
 mod large;
 mod lists;
 mod manual;
 mod paths;
 mod pictures;
+mod playback;
+mod preview;
 mod states;
+mod structure;
+mod values;
 mod views;

@@ -7,6 +7,8 @@ import { short } from "./words.js";
 
 /** The default number of increments of a followed direction is that of the path, but at least this. */
 const FEWEST = 20;
+/** Of more contacts than this, those that touch are named and the others counted. */
+const MANY = 12;
 
 export class Directions {
   /** Tells `followed(job)` and `chosen(index)`. */
@@ -58,8 +60,7 @@ export class Directions {
   draw(path, at, { index, directions, contacts }) {
     this.panel.hidden = false;
     const problem = element("p", { class: "bad", role: "alert" });
-    const states = (direction) => direction.contacts
-      .map((status, place) => `${contacts[place] ? `${contacts[place].node}: ` : ""}${status}`).join(", ");
+    const states = (direction) => statesOf(direction, contacts);
     const most = element("input", {
       type: "number", id: "follow-most", "data-key": "most", min: 1, max: path.job.progress.max_increments, step: 1,
       value: Math.min(path.job.progress.max_increments, Math.max(FEWEST, path.index.length)),
@@ -96,4 +97,14 @@ export class Directions {
       directions.every(({ taken }) => taken) ? null
         : element("p", {}, element("label", {}, "Follow another for at most ", most, " increments.")), problem);
   }
+}
+
+/** The states of the contacts of a direction; of many contacts those that touch. */
+function statesOf(direction, contacts) {
+  const all = direction.contacts.map((status, place) => ({ node: contacts[place]?.node, status }));
+  const named = all.length > MANY ? all.filter(({ status }) => status !== "free") : all;
+  const rest = all.length - named.length;
+  return [
+    ...named.map(({ node, status }) => (node === undefined ? status : `${node}: ${status}`)), ...(rest ? [`${rest} free`] : []),
+  ].join(", ");
 }

@@ -43,7 +43,8 @@ export function plotButtons(plot, failed) {
     button("Save the points (CSV)", saving(({ pointsFile }, found) => pointsFile(found)), { id: "path-points" }));
 }
 
-function save(blob, name) {
+/** Saves bytes as a file of that name. */
+export function save(blob, name) {
   const address = URL.createObjectURL(blob);
   const link = document.createElement("a");
   link.href = address;

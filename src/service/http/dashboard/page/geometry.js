@@ -9,24 +9,25 @@ const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a
 
 export const vector = { plus, times, dot, length, unit, cross };
 
-/** Node name to position, for the recorded nodes. */
-export function places(model, increment) {
+/** Node name to position, for the recorded nodes, with displacements so many times as large as they are. */
+export function places(model, increment, exaggeration = 1) {
   return new Map(Object.entries(model.nodes).filter(([name]) => increment.displacements[name])
-    .map(([name, place]) => [name, plus(place, increment.displacements[name])]));
+    .map(([name, place]) => [name, plus(place, increment.displacements[name], exaggeration)]));
 }
 
-/** The displacement of each obstacle: that of earlier stages, plus the pattern of the current stage times its load factor. */
-export function motions(model, increment, reached) {
-  const moved = new Map();
+/** What acts at an increment of a member of the stages (`forces`, `displacements`, `obstacle_motion`), by name: the patterns of
+ *  earlier stages times what they came to, plus that of the current stage times its load factor. */
+export function acting(model, increment, reached, member) {
+  const sums = new Map();
   for (const stage of model.stages) {
     const isRunning = stage.name === increment.stage;
     const factor = isRunning ? increment.load_factor : reached.get(stage.name) ?? 0;
-    for (const [name, motion] of Object.entries(stage.obstacle_motion ?? {})) {
-      moved.set(name, plus(moved.get(name) ?? times(motion, 0), motion, factor));
+    for (const [name, pattern] of Object.entries(stage[member] ?? {})) {
+      sums.set(name, plus(sums.get(name) ?? times(pattern, 0), pattern, factor));
     }
     if (isRunning) break;
   }
-  return moved;
+  return sums;
 }
 
 /** The normal of an obstacle into the free side at a position, and the tangents to which the reactions refer. */

@@ -39,8 +39,9 @@ export class JobView {
       failed: (words) => told.said(words),
     });
     this.structure = new StructurePlot(byId("structure"), {
-      chosen, pointedAt: (yes) => this.pathPlot.pointAt(yes), turned: (turn) => change({ turn }),
-    }, state().turn);
+      chosen, pointedAt: (yes) => this.pathPlot.pointAt(yes), seen: change,
+      shown: async (...increment) => (await import("./contacts-table.js")).showContacts(byId("contacts"), ...increment),
+    }, state());
     this.directions = new Directions(byId("directions"), {
       chosen,
       followed: (job) => { told.changed(); change({ jobs: [...state().jobs, job.id] }); },
@@ -87,7 +88,7 @@ export class JobView {
 
   /** From where the structure is seen, and whether the figures are open, as the address says: one may have gone back. */
   look() {
-    this.structure.seen.lookFrom(state().turn);
+    this.structure.lookAs(state());
     this.diagnostics.open(state().figures);
   }
 

@@ -84,8 +84,10 @@ listsDrawer(byId("open-lists"), byId("lists"));
 byId("open-run").addEventListener("click", () => change({ run: true }));
 addEventListener("keydown", (event) => {
   if (event.target.matches("input, textarea, select") || event.ctrlKey || event.metaKey || event.altKey) return;
-  const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+  const step = { ArrowLeft: -1, ArrowRight: 1, Home: -Infinity, End: Infinity }[event.key];
   if (step && !state().run) jobView.step(step);
+  // Where something has the focus, the key is its own.
+  if (event.key === " " && !event.target.matches("button, summary, a") && !state().run) jobView.structure.play(event);
 });
 view(null);
 // If there is something to draw, it is drawn first.

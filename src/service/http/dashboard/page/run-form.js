@@ -3,6 +3,7 @@
 
 import { call, get, post } from "./api.js";
 import { button, choice, element, fill } from "./dom.js";
+import { ModelPreview } from "./model-preview.js";
 import { placeIn, withMember, withoutMember } from "./json-places.js";
 import { RequestText } from "./request-text.js";
 import { SceneChoice } from "./scene-choice.js";
@@ -29,6 +30,7 @@ export class RunForm {
     this.asked = 0;
     this.fields = new Map();
     this.text = new RequestText({ edited: () => this.edited(), pasted: () => this.scenes.isOwn() });
+    this.preview = new ModelPreview();
     this.scenes = new SceneChoice(this.text, { chosen: (scene) => this.choose(scene), edited: () => this.edited() });
     this.button = button("Run", () => this.queue(), { id: "queue", class: "main", disabled: true });
     this.verdict = element("div", { id: "verdict", "aria-live": "polite" });
@@ -50,7 +52,7 @@ export class RunForm {
         element("div", {}, element("p", { class: "quiet" }, others),
           this.text.place,
           element("div", { class: "actions" }, this.button, button("Close", () => change({ run: false }))), this.verdict),
-        element("div", {}, element("h3", {}, "Settings"), this.settings)));
+        element("div", {}, this.preview.place, element("h3", {}, "Settings"), this.settings)));
     // Beside the form, too: a browser leaves the page for a file that is dropped on it.
     addEventListener("dragover", (event) => { if (event.dataTransfer?.types.includes("Files")) event.preventDefault(); });
     addEventListener("drop", (event) => {
@@ -163,6 +165,7 @@ export class RunForm {
     this.button.disabled = true;
     this.button.textContent = this.isStudy ? "Run the study" : this.isSweep ? "Run the sweep" : "Run";
     this.text.number([]);
+    this.preview.later(this.text.value);
     this.scenes.draw(this.known ?? [], this.wanted);
     let request = null;
     try {

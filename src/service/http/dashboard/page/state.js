@@ -3,12 +3,13 @@
 // jobs: ids drawn in the path plot; the first is the one whose structure and figures are shown. study, sweep: the id of one that
 // is shown in their place. abscissa and ordinate: a member of the increments or a JSON Pointer to one; null for the job's own
 // choice. at: the chosen increment, null for the last. turn: azimuth and elevation (degrees) from which a structure in space
-// is seen, null for the usual ones. figures: the diagnostics are open. status and search: what the lists show. run: the form for
-// a new run is open; scene: what is in it; as: "study" or "sweep" where it queues one; again: how often the model of a job has been asked
-// for, which is not in the address.
+// is seen, null for the usual ones. exaggeration: of its displacements. figures: the diagnostics are open. status and search: what
+// the lists show. run: the form for a new run is open; scene: what is in it; as: "study" or "sweep" where it queues one; again: how
+// often the model of a job has been asked for, which is not in the address.
 
 const EMPTY = {
-  jobs: [], study: null, sweep: null, abscissa: null, ordinate: null, at: null, turn: null, figures: false, status: "", search: "", run: false, scene: "",
+  jobs: [], study: null, sweep: null, abscissa: null, ordinate: null, at: null, turn: null, exaggeration: 1, figures: false,
+  status: "", search: "", run: false, scene: "",
   as: "", again: 0,
 };
 /** What jobs, studies and sweeps can be filtered by. */
@@ -32,6 +33,7 @@ function ofAddress() {
     ordinate: given.get("ordinate"),
     at: Number.isSafeInteger(at) && at >= 0 ? at : null,
     turn: angles(given.get("turn") ?? ""),
+    exaggeration: factor(given.get("exaggeration")),
     figures: given.has("figures"),
     status: STATUSES.find((status) => status === given.get("status")) ?? "",
     search: (given.get("search") ?? "").trim(),
@@ -46,6 +48,11 @@ function angles(text) {
   return text && found.length === 2 && found.every(Number.isFinite) ? found : null;
 }
 
+function factor(text) {
+  const found = Number(text ?? "1");
+  return text !== "" && Number.isFinite(found) && found >= 0 ? found : 1;
+}
+
 function address(state) {
   const parts = [];
   if (state.study) parts.push(`study=${state.study}`);
@@ -55,6 +62,7 @@ function address(state) {
   if (state.ordinate) parts.push(`ordinate=${encodeURIComponent(state.ordinate)}`);
   if (state.at !== null) parts.push(`at=${state.at}`);
   if (state.turn) parts.push(`turn=${state.turn.map(Math.round).join(",")}`);
+  if (state.exaggeration !== 1) parts.push(`exaggeration=${state.exaggeration}`);
   if (state.figures) parts.push("figures");
   if (state.status) parts.push(`status=${encodeURIComponent(state.status)}`);
   if (state.search) parts.push(`search=${encodeURIComponent(state.search)}`);

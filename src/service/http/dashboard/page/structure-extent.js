@@ -1,9 +1,9 @@
-// The extent of the picture of a structure: the undeformed structure, obstacles that are not much larger, and all positions shown
-// so far, so that the picture does not jump from increment to increment.
+// The extent of a structure and of its picture: what has been shown so far counts, so that the picture does not jump from
+// increment to increment.
 
 import { vector } from "./geometry.js";
 
-const { plus, length } = vector;
+const { plus, dot, length } = vector;
 /** Times the structure's size up to which a ball is in the picture whole. */
 const NOT_MUCH = 3;
 
@@ -12,15 +12,20 @@ export class StructureExtent {
     const nodes = Object.values(model.nodes);
     this.low = [...nodes[0]];
     this.high = [...nodes[0]];
+    this.outermost = ways(model.dimension).map((way) => ({ way, most: -Infinity, place: null }));
+    /** Name of an obstacle to the range of its feet in the coordinates along it. */
+    this.feet = new Map();
     this.widen(nodes);
     const ofNodes = this.diagonal();
+    this.isWhole = (obstacle) => obstacle.kind === "ball" && (ofNodes === 0 || obstacle.radius < NOT_MUCH * ofNodes);
     for (const obstacle of Object.values(model.obstacles ?? {})) {
-      if (obstacle.kind === "ball" && (ofNodes === 0 || obstacle.radius < NOT_MUCH * ofNodes)) {
+      if (this.isWhole(obstacle)) {
         this.widen([-1, 1].map((side) => obstacle.center.map((value) => value + side * obstacle.radius)));
       }
     }
   }
 
+  /** The structure reaches these positions. */
   widen(places) {
     for (const place of places) {
       place.forEach((value, axis) => {
@@ -28,12 +33,39 @@ export class StructureExtent {
         this.high[axis] = Math.max(this.high[axis], value);
       });
     }
+    this.show(places);
   }
 
-  /** The size of the bounding box. */
+  /** The picture has room for these positions. */
+  show(places) {
+    for (const place of places) {
+      for (const one of this.outermost) {
+        const reach = dot(place, one.way);
+        if (reach > one.most) Object.assign(one, { most: reach, place });
+      }
+    }
+  }
+
+  /** The positions between which the picture lies, from wherever it is looked at. */
   get corners() {
-    const both = (corner, low, axis) => [[...corner, low], [...corner, this.high[axis]]];
-    return this.low.reduce((found, low, axis) => found.flatMap((corner) => both(corner, low, axis)), [[]]);
+    return this.outermost.map(({ place }) => place);
+  }
+
+  /** Widens the range of the feet on an obstacle; answers it as `[low, high]` for each direction along the obstacle. */
+  stand(name, along) {
+    const known = this.feet.get(name) ?? along[0]?.map((value) => [value, value]) ?? [];
+    const range = known.map(([low, high], axis) => {
+      const values = along.map((place) => place[axis]);
+      return [values.reduce((a, b) => Math.min(a, b), low), values.reduce((a, b) => Math.max(a, b), high)];
+    });
+    if (range.length) this.feet.set(name, range);
+    return range;
+  }
+
+  /** Whether a position is within so many times the structure's size of it. */
+  isNear(place, times) {
+    const around = times * this.size;
+    return place.every((value, axis) => value >= this.low[axis] - around && value <= this.high[axis] + around);
   }
 
   diagonal() {
@@ -47,4 +79,11 @@ export class StructureExtent {
   get middle() {
     return this.low.map((value, axis) => (value + this.high[axis]) / 2);
   }
+}
+
+/** Directions along the axes and between them. */
+function ways(dimension) {
+  let found = [[]];
+  for (let axis = 0; axis < dimension; axis++) found = found.flatMap((way) => [-1, 0, 1].map((part) => [...way, part]));
+  return found.filter((way) => way.some((part) => part !== 0));
 }

@@ -1,17 +1,22 @@
 // The Plotly traces of the picture of a structure, one for all parts with the same style.
 
-import { fromSheet } from "./plot-style.js";
-import { short, verbatim } from "./words.js";
+import { verbatim } from "./words.js";
 
-/** From this number on nodes are drawn small. */
-const MANY = 200;
+/** Places of an element, between its ends, at which its values are shown by hovering; fewer where there are very many. */
+const ALONG = { few: [0.25, 0.5, 0.75], many: [0.5] };
+
+/** Lines of text, each escaped. */
+const said = (words) => [words].flat().filter(Boolean).map(verbatim).join("<br>");
 
 export class StructureTraces {
-  /** `flat` projects a position onto the picture. */
-  constructor(flat) {
+  /** `flat` projects a position onto the picture; `isLarge`: there are very many of them. */
+  constructor(flat, isLarge) {
     this.flat = flat;
+    this.along = isLarge ? ALONG.many : ALONG.few;
     this.all = [];
     this.byName = new Map();
+    /** The positions of all that has been drawn. */
+    this.reach = [];
   }
 
   trace(name, make) {
@@ -24,12 +29,13 @@ export class StructureTraces {
   }
 
   add(trace, places, words = "") {
-    const said = verbatim(words);
+    const text = said(words);
     for (const place of places) {
       const [x, y] = this.flat(place);
       trace.x.push(x);
       trace.y.push(y);
-      trace.text.push(said);
+      trace.text.push(text);
+      this.reach.push(place);
     }
   }
 
@@ -47,39 +53,54 @@ export class StructureTraces {
     }
   }
 
-  area(outline) {
+  /** The line of an element, whose values are shown between its ends, as nodes have theirs at them. */
+  element(name, [from, to], line, words) {
+    const trace = this.trace(name, () => ({ mode: "lines", line, hoverinfo: "skip" }));
+    this.add(trace, [from, to], words);
+    this.interrupt(trace);
+    for (const part of this.along) {
+      this.unmarked("element values", from.map((value, axis) => value + part * (to[axis] - value)), words);
+    }
+  }
+
+  /** A position with values but without a mark. */
+  unmarked(name, place, words) {
+    const trace = this.trace(name, () => ({ mode: "lines", line: { width: 0 } }));
+    this.add(trace, [place], words);
+    this.interrupt(trace);
+  }
+
+  area(outline, fillcolor) {
     const trace = this.trace(`area ${this.all.length}`, () => ({
-      mode: "lines", line: { width: 0 }, fill: "toself", fillcolor: fromSheet("--ground"), hoverinfo: "skip",
+      mode: "lines", line: { width: 0 }, fill: "toself", fillcolor, hoverinfo: "skip",
     }));
     this.add(trace, outline);
   }
 
-  arrow(name, from, to, color) {
+  /** An arrow; its values, if there are any, are shown at that end which is not at a node. */
+  arrow(name, from, to, color, { words = "", isAtHead = false } = {}) {
     const trace = this.trace(name, () => ({
       mode: "lines+markers", line: { color, width: 2 }, hoverinfo: "skip",
       marker: { symbol: "arrow", angleref: "previous", size: [], color },
     }));
-    this.add(trace, [from, to]);
+    this.add(trace, [from, to], words);
     this.interrupt(trace);
+    if (words) this.unmarked("arrow values", isAtHead ? to : from, words);
     trace.marker.size.push(0, 12, 0);
   }
 
   marker(name, place, marker, words) {
     const trace = this.trace(name, () => ({
       mode: "markers", marker: { size: 11, line: { width: 2, color: marker.color }, ...marker },
+      ...(words ? {} : { hoverinfo: "skip" }),
     }));
     this.add(trace, [place], words);
   }
 
-  nodes(now, supports) {
-    const node = this.trace("node", () => ({
-      mode: "markers", marker: { color: fromSheet("--text"), size: now.size > MANY ? 3 : 5 },
+  names(places, color) {
+    const trace = this.trace("node name", () => ({
+      mode: "text", textposition: "top right", textfont: { size: 12, color }, hoverinfo: "skip", cliponaxis: false,
     }));
-    for (const [name, place] of now) this.add(node, [place], `${name} (${place.map(short).join(", ")})`);
-    const held = this.trace("support", () => ({
-      mode: "markers", hoverinfo: "skip",
-      marker: { symbol: "triangle-up-open", size: 13, color: fromSheet("--text"), line: { width: 1.5 } },
-    }));
-    for (const name of Object.keys(supports)) if (now.has(name)) this.add(held, [now.get(name)]);
+    for (const [name, place] of places) this.add(trace, [place], name);
   }
 }

@@ -14,10 +14,11 @@ const seenFrom = (turn) => {
 };
 
 export class StructureTurn {
-  /** `place`: of the picture; `turn`: as the address has it. Tells `turned([azimuth, elevation])` of what the reader does, and
-   *  `again()` where the picture is another. */
-  constructor(place, turn, { turned, again }) {
+  /** `place`: of the picture; `turn`: as the address has it; `before`: what the ids of the sliders begin with. Tells
+   *  `turned([azimuth, elevation])` of what the reader does, and `again()` where the picture is another. */
+  constructor(place, turn, { turned, again }, before = "") {
     this.place = place;
+    this.before = before;
     this.told = { turned, again };
     this.view = seenFrom(turn);
     this.isInSpace = false;
@@ -30,7 +31,7 @@ export class StructureTurn {
     this.isInSpace = isInSpace;
     this.place.classList.toggle("turns", isInSpace);
     fill(this.sliders, isInSpace ? Object.keys(ANGLES).map((angle) => element("label", {}, `${angle} `, element("input", {
-      type: "range", id: angle, "data-key": angle, min: -ANGLES[angle], max: ANGLES[angle], value: this.view[angle],
+      type: "range", id: `${this.before}${angle}`, "data-key": angle, min: -ANGLES[angle], max: ANGLES[angle], value: this.view[angle],
       oninput: (event) => this.turn({ [angle]: Number(event.target.value) }),
     }))) : []);
   }
@@ -52,7 +53,7 @@ export class StructureTurn {
 
   show() {
     for (const angle of Object.keys(ANGLES)) {
-      const slider = this.sliders.querySelector(`#${angle}`);
+      const slider = this.sliders.querySelector(`#${this.before}${angle}`);
       if (slider) slider.value = this.view[angle];
     }
     this.told.again();

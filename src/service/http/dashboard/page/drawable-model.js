@@ -1,0 +1,107 @@
+// What can be drawn of the model in the text of a request, and sentences on what cannot.
+
+const KINDS = ["plane", "ball"];
+/** The most sentences; the others are counted. */
+const SENTENCES = 8;
+
+const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
+const membersOf = (value) => Object.entries(isObject(value) ? value : {});
+const listOf = (value) => (Array.isArray(value) ? value : []);
+
+class Reading {
+  constructor(dimension) {
+    this.dimension = dimension;
+    this.problems = [];
+  }
+
+  isVector(value) {
+    return Array.isArray(value) && value.length === this.dimension && value.every(Number.isFinite);
+  }
+
+  /** The members of which there is nothing to say; `why(value, name)`: what is wrong, null if nothing is. */
+  keep(given, what, why) {
+    const isRight = ([name, value]) => this.isRight(`${what} “${name}”`, why(value, name));
+    return Object.fromEntries(membersOf(given).filter(isRight));
+  }
+
+  isRight(what, wrong) {
+    if (wrong) this.problems.push(`${what} is not drawn: ${wrong}`);
+    return !wrong;
+  }
+
+  vectorOr(value) {
+    return this.isVector(value) ? null : `it has to be ${this.dimension} numbers`;
+  }
+}
+
+/** `{model, problems}`: what can be drawn, null where nothing can, and sentences on the rest. */
+export function drawableModel(text) {
+  let request;
+  try {
+    request = JSON.parse(text);
+  } catch (problem) {
+    return nothing(`The text is not JSON yet: ${problem.message}`);
+  }
+  const given = request?.model;
+  if (!isObject(given)) return nothing("There is no “model” in the text");
+  if (given.dimension !== 2 && given.dimension !== 3) return nothing("The model's “dimension” has to be 2 or 3");
+  const reading = new Reading(given.dimension);
+  const nodes = reading.keep(given.nodes, "The node", (place) => reading.vectorOr(place));
+  if (Object.keys(nodes).length === 0) return nothing(...bounded(reading.problems), "There is no node that can be drawn");
+  const units = isObject(given.units) ? given.units : {};
+  const model = { ...parts(reading, given, nodes), dimension: given.dimension, nodes, units };
+  return { model, problems: bounded(reading.problems) };
+}
+
+const nothing = (...problems) => ({ model: null, problems });
+
+function bounded(problems) {
+  const more = problems.length - SENTENCES;
+  return more > 0 ? [...problems.slice(0, SENTENCES), `and ${more} more like these`] : problems;
+}
+
+function parts(reading, given, nodes) {
+  const missing = (name) => (typeof name === "string" && Object.hasOwn(nodes, name) ? null : `there is no node “${name}”`);
+  const obstacles = reading.keep(given.obstacles, "The obstacle", (obstacle) => obstacleProblem(reading, obstacle));
+  const elements = listOf(given.elements).filter((item, number) =>
+    reading.isRight(`Element ${number}`, elementProblem(reading, item, missing)));
+  const contacts = listOf(given.contacts).filter((item, number) => reading.isRight(`Contact ${number}`,
+    missing(item?.node) ?? (Object.hasOwn(obstacles, item.obstacle) ? null : `there is no obstacle “${item.obstacle}”`)));
+  const supports = reading.keep(given.supports, "The support of", (held, name) => missing(name)
+    ?? (listOf(held).length && held.every((one) => "xyz".slice(0, reading.dimension).includes(one)) ? null
+      : "it has to list components, such as \"x\""));
+  return { obstacles, elements, contacts, supports, stages: listOf(given.stages).map((stage, number) =>
+    stageOf(reading, stage, number, { missing, obstacles })) };
+}
+
+function obstacleProblem(reading, obstacle) {
+  if (!KINDS.includes(obstacle?.kind)) return "its kind has to be plane or ball";
+  if (obstacle.kind === "ball") {
+    return obstacle.radius > 0 ? reading.vectorOr(obstacle.center) : "its radius has to be a number above 0";
+  }
+  const isDirection = reading.isVector(obstacle.normal) && obstacle.normal.some((value) => value !== 0);
+  return isDirection ? reading.vectorOr(obstacle.point) : "its normal has to be a direction";
+}
+
+function elementProblem(reading, item, missing) {
+  const names = listOf(item?.nodes);
+  const most = item?.kind === "bar" ? [2] : [1, 2];
+  if (item?.kind !== "bar" && item?.kind !== "spring") return "its kind has to be bar or spring";
+  if (!most.includes(names.length)) return `it has to have ${most.join(" or ")} nodes`;
+  const found = names.map(missing).find(Boolean);
+  if (found || item.kind === "bar") return found ?? null;
+  return listOf(item.stiffness).length === reading.dimension && item.stiffness.every((row) => reading.isVector(row)) ? null
+    : `its stiffness has to be ${reading.dimension} rows of ${reading.dimension} numbers`;
+}
+
+function stageOf(reading, stage, number, { missing, obstacles }) {
+  const of = (what) => `${what} of stage ${typeof stage?.name === "string" ? `“${stage.name}”` : number} on`;
+  const onNode = (value, name) => missing(name) ?? reading.vectorOr(value);
+  return {
+    name: `${number}`,
+    forces: reading.keep(stage?.forces, of("The force"), onNode),
+    displacements: reading.keep(stage?.displacements, of("The displacement"), onNode),
+    obstacle_motion: reading.keep(stage?.obstacle_motion, of("The motion"), (value, name) =>
+      (Object.hasOwn(obstacles, name) ? reading.vectorOr(value) : `there is no obstacle “${name}”`)),
+  };
+}

@@ -1,0 +1,89 @@
+// Contacts in the picture of a structure: their states, their reactions in friction cones, and where they slip.
+
+import { frame, vector } from "./geometry.js";
+import { fromSheet } from "./plot-style.js";
+import { contactWords } from "./structure-nodes.js";
+
+const { plus, times, length, unit } = vector;
+/** Lengths of arrows and cones, as parts of the extent. */
+const ARROW = 0.22;
+const CONE = 0.16;
+const SLIP = 0.12;
+/** With more contacts than this those that are free have no mark. */
+const MARKED = 100;
+export const STATES = [["free", "circle-open", "--free"], ["stick", "square", "--stick"], ["slip", "diamond", "--slip"]];
+
+export class ContactDrawing {
+  /** `most`: the reaction whose arrow has its full length. */
+  constructor(model, increment, extent, traces, { now, moved, most, units, detail }) {
+    Object.assign(this, { model, extent, traces, now, moved, most, units, detail });
+    this.friction = new Map((model.contacts ?? []).map((item) => [`${item.node}\n${item.obstacle}`, item.friction ?? 0]));
+    const { contacts } = increment;
+    const drawn = contacts.filter(({ node }) => now.has(node));
+    const closed = drawn.filter(({ status }) => status !== "free");
+    const marked = drawn.length > MARKED ? closed : drawn;
+    const lacking = contacts.length - drawn.length;
+    if (marked.length < drawn.length) detail.leave(`${drawn.length - marked.length} free contacts have no mark`);
+    if (lacking > 0) detail.leave(`${lacking} contacts of nodes that are not recorded are not drawn`);
+    for (const contact of marked) this.mark(contact);
+    const rough = closed.filter((contact) => this.frictionOf(contact) > 0);
+    if (rough.length && detail.hasCones(rough.length)) rough.forEach((contact) => this.cone(contact));
+    const pushed = closed.map((contact) => [contact, this.reaction(contact)]).filter(([, force]) => length(force) > 0);
+    for (const [contact, force] of detail.arrows(pushed, "reactions")) this.arrow(contact, force);
+    const slipping = closed.map((contact) => [contact, this.along(contact, contact.slip)])
+      .filter(([contact, slip]) => contact.status === "slip" && length(slip) > 0);
+    for (const [contact, slip] of detail.arrows(slipping, "slips")) this.slip(contact, slip);
+  }
+
+  frictionOf({ node, obstacle }) {
+    return this.friction.get(`${node}\n${obstacle}`) ?? 0;
+  }
+
+  frame({ node, obstacle }) {
+    return frame(this.model.obstacles[obstacle], this.now.get(node), this.moved.get(obstacle));
+  }
+
+  /** A vector of its components along the tangents. */
+  along(contact, parts) {
+    const { normal, tangents } = this.frame(contact);
+    return tangents.reduce((sum, tangent, which) => plus(sum, tangent, parts[which]), times(normal, 0));
+  }
+
+  reaction(contact) {
+    return contact.reaction
+      ?? plus(this.along(contact, contact.tangential_reaction), this.frame(contact).normal, contact.normal_reaction);
+  }
+
+  mark(contact) {
+    const [, symbol, colour] = STATES.find(([state]) => state === contact.status) ?? STATES[0];
+    const size = this.detail.isLarge ? 7 : 11;
+    // The node tells its values.
+    this.traces.marker(contact.status, this.now.get(contact.node), { symbol, color: fromSheet(colour), size });
+  }
+
+  cone(contact) {
+    const { normal, tangents } = this.frame(contact);
+    const lines = cone(this.now.get(contact.node), normal, tangents, this.frictionOf(contact), CONE * this.extent.size);
+    this.traces.lines("cone", lines, { color: fromSheet("--cone"), width: 1.5 });
+  }
+
+  arrow(contact, force) {
+    const place = this.now.get(contact.node);
+    this.traces.arrow("reaction", place, plus(place, force, (ARROW * this.extent.size) / this.most), fromSheet("--text"),
+      { words: contactWords(contact, this.units), isAtHead: true });
+  }
+
+  slip(contact, slip) {
+    const place = this.now.get(contact.node);
+    this.traces.arrow("slip direction", place, plus(place, unit(slip), SLIP * this.extent.size), fromSheet("--slip"));
+  }
+}
+
+function cone(place, normal, tangents, coefficient, size) {
+  const edge = (parts) => plus(place, unit(tangents.reduce((sum, tangent, which) =>
+    plus(sum, tangent, coefficient * parts[which]), normal)), size);
+  if (tangents.length === 1) return [[edge([-1]), place, edge([1])]];
+  const round = [...Array(17).keys()].map((step) =>
+    edge([Math.cos((Math.PI * step) / 8), Math.sin((Math.PI * step) / 8)]));
+  return [round, [round[0], place, round[8]], [round[4], place, round[12]]];
+}

@@ -1,0 +1,48 @@
+// The level of detail of a picture of a structure: what is left out of a large one, so that it can be read and is drawn quickly.
+
+/** With more nodes than this the picture is a large one: thin lines, marks only at nodes at which something acts. */
+const LARGE = 300;
+/** With at most this many nodes their names are in the picture. */
+const NAMED = 12;
+/** With at most this many nodes their names can be asked for. */
+const NAMEABLE = 150;
+/** The most friction cones, and the most arrows of one kind. */
+const CONES = 60;
+const ARROWS = 120;
+
+export class Detail {
+  constructor(model) {
+    this.nodes = Object.keys(model.nodes).length;
+    this.isLarge = this.nodes > LARGE;
+    this.hasNames = this.nodes <= NAMED;
+    this.canHaveNames = this.nodes <= NAMEABLE;
+    /** Sentences on what has been left out of the picture. */
+    this.leftOut = [];
+    if (this.isLarge) {
+      this.leave(`With ${this.nodes} nodes, lines are thin, and no marks are drawn at nodes at which nothing acts, nor the `
+        + "undeformed structure");
+    }
+  }
+
+  leave(words) {
+    this.leftOut.push(words);
+  }
+
+  get lineWidth() {
+    return this.isLarge ? 1.5 : 4;
+  }
+
+  hasCones(contacts) {
+    if (contacts <= CONES) return true;
+    this.leave(`Friction cones are not drawn for more than ${CONES} contacts`);
+    return false;
+  }
+
+  /** The largest of so many `[key, force]` that their arrows can be told apart. */
+  arrows(forces, what) {
+    if (forces.length <= ARROWS) return forces;
+    this.leave(`Of ${forces.length} ${what} the ${ARROWS} largest have arrows`);
+    const size = ([, force]) => Math.hypot(...force);
+    return [...forces].sort((a, b) => size(b) - size(a)).slice(0, ARROWS);
+  }
+}

@@ -1,0 +1,74 @@
+// Nodes in the picture of a structure, with all that is known of each by hovering, their supports and their names.
+
+import { vector } from "./geometry.js";
+import { fromSheet } from "./plot-style.js";
+import { components, measured } from "./units.js";
+
+const { plus } = vector;
+const AXES = "xyz";
+/** The height of the triangle of a support, and of one in a large structure, as parts of the extent. */
+const SUPPORT = 0.035;
+const SMALL = 0.015;
+
+/** Lines on a contact. */
+export function contactWords(contact, units) {
+  return [
+    `${contact.node} on ${contact.obstacle}: ${contact.status}`, `gap ${measured(contact.gap, units.length)}`,
+    `normal reaction ${measured(contact.normal_reaction, units.force)}`,
+    `tangential reaction ${components(contact.tangential_reaction, units.force)}`,
+  ];
+}
+
+export class NodeDrawing {
+  /** `loads`: node to force. */
+  constructor(model, increment, extent, traces, { now, loads, units, detail, hasNames }) {
+    Object.assign(this, { model, increment, extent, traces, now, loads, units, detail });
+    this.contacts = Map.groupBy(increment.contacts, ({ node }) => node);
+    this.supports();
+    this.nodes();
+    if (hasNames) traces.names(now, fromSheet("--text"));
+  }
+
+  /** A triangle for each component that is held, with its tip at the node. */
+  supports() {
+    const { model, traces, now, extent } = this;
+    const height = (this.detail.isLarge ? SMALL : SUPPORT) * extent.size;
+    const line = { color: fromSheet("--text"), width: this.detail.isLarge ? 1 : 1.5 };
+    for (const [name, held] of Object.entries(model.supports ?? {})) {
+      const place = now.get(name);
+      if (!place) continue;
+      for (const component of held) {
+        const axis = AXES.indexOf(component);
+        const beside = axis === 0 ? 1 : 0;
+        const corner = (aside) => place.map((value, which) =>
+          value - (which === axis ? height : 0) + (which === beside ? aside * height : 0));
+        traces.lines("support", [[place, corner(-0.6), corner(0.6), place]], line);
+      }
+    }
+  }
+
+  words(name) {
+    const { increment, units, model } = this;
+    const reaction = increment.supports?.[name];
+    const held = model.supports?.[name];
+    const load = this.loads.get(name);
+    return [
+      name, `at ${components(plus(model.nodes[name], increment.displacements[name]), units.length)}`,
+      increment.index === null ? null : `displacement ${components(increment.displacements[name], units.length)}`,
+      held?.length ? `held in ${held.join(", ")}${reaction ? `, reaction ${components(reaction, units.force)}` : ""}` : null,
+      load ? `load ${components(load, units.force)}` : null,
+      ...(this.contacts.get(name) ?? []).flatMap((contact) => contactWords(contact, units)),
+    ];
+  }
+
+  nodes() {
+    const { traces, detail } = this;
+    const node = traces.trace("node", () => (detail.isLarge ? { mode: "lines", line: { width: 0 } }
+      : { mode: "markers", marker: { color: fromSheet("--text"), size: 5 } }));
+    for (const [name, place] of this.now) {
+      traces.add(node, [place], this.words(name));
+      // No lines between nodes.
+      if (detail.isLarge) traces.interrupt(node);
+    }
+  }
+}

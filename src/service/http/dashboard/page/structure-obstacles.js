@@ -1,0 +1,117 @@
+// Obstacles in the picture of a structure: of planes and of large balls the part near the feet, that is, near the nodes that may
+// touch them.
+
+import { frame, vector } from "./geometry.js";
+import { fromSheet } from "./plot-style.js";
+import { components } from "./units.js";
+
+const { plus, unit, dot } = vector;
+/** Corners of the polygon that represents a circle, and of each side of the part of an obstacle. */
+const ROUND = 48;
+const SIDE = 16;
+/** How far a part goes beyond the feet, how deep it is drawn in a plane, and half its side where no node may touch it: as parts
+ *  of the extent. */
+const BEYOND = 0.2;
+const DEEP = 0.07;
+const ALONE = 0.3;
+/** The part of the extent within which an obstacle is in the picture. */
+const NEAR = 0.75;
+/** The length of the arrow of an obstacle's motion, as a part of the extent. */
+const MOTION = 0.15;
+
+export class ObstacleDrawing {
+  /** `now`: where the nodes are; `moved`: the displacements of the obstacles; `moves`: those whose arrows are drawn. */
+  constructor(model, extent, traces, { now, moved, moves, units, detail }) {
+    Object.assign(this, { model, extent, traces, now, moved, moves, units, detail });
+    this.line = { color: fromSheet("--obstacle"), width: 2 };
+    for (const [name, obstacle] of Object.entries(model.obstacles ?? {})) this.draw(name, obstacle);
+  }
+
+  draw(name, obstacle) {
+    const { traces, extent } = this;
+    const before = traces.reach.length;
+    const middle = extent.isWhole(obstacle) ? this.ball(name, obstacle) : this.part(name, obstacle);
+    if (!traces.reach.slice(before).some((place) => extent.isNear(place, NEAR))) {
+      // Not to push the structure into a corner.
+      traces.reach.length = before;
+      this.detail.leave(`The obstacle “${name}” is too far from the structure to be in the picture`);
+      return;
+    }
+    const motion = this.moves.get(name);
+    if (!motion?.some((value) => value !== 0)) return;
+    const to = plus(middle, unit(motion), MOTION * extent.size);
+    traces.arrow("motion of an obstacle", middle, to, fromSheet("--obstacle"), {
+      words: `${name} moves by ${components(motion, this.units.length)}`, isAtHead: true,
+    });
+  }
+
+  /** The nodes that may touch an obstacle, where they were and where they are. */
+  feet(name) {
+    const found = (this.model.contacts ?? []).filter((contact) => contact.obstacle === name);
+    return found.flatMap(({ node }) => [this.model.nodes[node], this.now.get(node)]).filter(Boolean);
+  }
+
+  /** The part near the feet; answers its middle. */
+  part(name, obstacle) {
+    const { extent, traces, model: { dimension } } = this;
+    const feet = this.feet(name);
+    const surface = surfaceOf(obstacle, feet[0] ?? extent.middle, this.moved.get(name) ?? []);
+    const ranges = extent.stand(name, feet.map(surface.along));
+    const around = feet.length ? BEYOND : ALONE;
+    const sides = (ranges.length ? ranges : surface.along(extent.middle).map((value) => [value, value]))
+      .map(([low, high]) => [low - around * extent.size, high + around * extent.size]);
+    const between = ([low, high], step) => low + ((high - low) * step) / SIDE;
+    const steps = [...Array(SIDE + 1).keys()];
+    const [first, second] = sides;
+    if (dimension === 2) {
+      const edge = steps.map((step) => surface.on([between(first, step)]));
+      traces.lines("obstacle", [edge], this.line, name);
+      const below = (place) => plus(place, surface.normalAt(place), -DEEP * extent.size);
+      traces.area([...edge, ...edge.map(below).reverse()], fromSheet("--ground"));
+      return edge[SIDE / 2];
+    }
+    const back = [...steps].reverse();
+    const edges = [
+      ...steps.map((step) => [between(first, step), second[0]]), ...steps.map((step) => [first[1], between(second, step)]),
+      ...back.map((step) => [between(first, step), second[1]]), ...back.map((step) => [first[0], between(second, step)]),
+    ].map(surface.on);
+    traces.lines("obstacle", [edges], this.line, name);
+    traces.area(edges, fromSheet("--ground"));
+    return surface.on([between(first, SIDE / 2), between(second, SIDE / 2)]);
+  }
+
+  /** A ball as a whole; answers its centre. */
+  ball(name, obstacle) {
+    const { traces, model: { dimension } } = this;
+    const center = plus(obstacle.center, this.moved.get(name) ?? []);
+    const axes = dimension === 2 ? [[0, 1]] : [[0, 1], [1, 2], [0, 2]];
+    for (const [first, second] of axes) {
+      const round = [...Array(ROUND + 1).keys()].map((step) => {
+        const angle = (2 * Math.PI * step) / ROUND;
+        const place = [...center];
+        place[first] += obstacle.radius * Math.cos(angle);
+        place[second] += obstacle.radius * Math.sin(angle);
+        return place;
+      });
+      traces.lines("obstacle", [round], this.line, name);
+      if (dimension === 2 && obstacle.side !== "inside") traces.area(round, fromSheet("--ground"));
+    }
+    return center;
+  }
+}
+
+/** Coordinates along the surface of an obstacle: `along(place)` of a position, `on(coordinates)` the position that has them, and
+ *  `normalAt(place)`. */
+function surfaceOf(obstacle, near, moved) {
+  const isPlane = obstacle.kind === "plane";
+  const center = isPlane ? null : plus(obstacle.center, moved);
+  const onBall = (place) => plus(center, unit(plus(place, center, -1)), obstacle.radius);
+  const origin = isPlane ? plus(obstacle.point, moved) : onBall(near);
+  const { tangents } = frame(obstacle, origin, moved);
+  const flat = (coordinates) => tangents.reduce((sum, tangent, axis) => plus(sum, tangent, coordinates[axis]), origin);
+  return {
+    along: (place) => tangents.map((tangent) => dot(plus(place, origin, -1), tangent)),
+    on: (coordinates) => (isPlane ? flat(coordinates) : onBall(flat(coordinates))),
+    normalAt: (place) => frame(obstacle, place, moved).normal,
+  };
+}

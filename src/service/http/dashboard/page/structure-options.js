@@ -1,0 +1,62 @@
+// How the structure is drawn, as the reader chooses it: the exaggeration of its displacements, and the names of its nodes.
+
+import { button, element, fill } from "./dom.js";
+
+/** What the largest displacement comes to where the exaggeration is fitted, as a part of the structure's size. */
+const SEEN = 0.1;
+
+export class StructureOptions {
+  /** Tells `changed()`; asks `fitted()` for the exaggeration at which displacements are seen; `exaggeration`: the
+   *  factor to begin with. */
+  constructor({ changed, fitted }, exaggeration) {
+    this.exaggeration = exaggeration;
+    /** Whether nodes have their names; null for the usual. */
+    this.hasNames = null;
+    this.told = { changed };
+    this.factor = element("input", {
+      type: "number", id: "exaggeration", min: 0, step: "any", value: exaggeration,
+      oninput: () => this.exaggerate(this.factor.value),
+    });
+    this.problem = element("span", { class: "bad", role: "alert" });
+    this.names = element("input", {
+      type: "checkbox", id: "node-names", onchange: () => { this.hasNames = this.names.checked; changed(); },
+    });
+    this.place = element("div", { class: "choices" });
+    fill(this.place, element("label", {}, "displacements × ", this.factor),
+      button("Fit", () => this.exaggerate(String(fitted())), {
+        id: "fit-exaggeration", title: "Choose a factor at which the displacements are seen",
+      }), element("label", {}, this.names, " names of nodes"), this.larger(), this.problem);
+  }
+
+  larger() {
+    const isLarge = () => this.place.parentElement.classList.toggle("large");
+    return button("Larger", (event) => {
+      event.target.setAttribute("aria-pressed", isLarge());
+      // The picture follows the size of its place.
+      dispatchEvent(new Event("resize"));
+    }, { id: "larger", "aria-pressed": "false" });
+  }
+
+  exaggerate(text) {
+    const factor = Number(text);
+    const isOne = text.trim() !== "" && Number.isFinite(factor) && factor >= 0;
+    this.problem.textContent = isOne ? "" : "The factor is a number, 0 or more.";
+    if (!isOne || factor === this.exaggeration) return;
+    if (Number(this.factor.value) !== factor) this.factor.value = text;
+    this.exaggeration = factor;
+    this.told.changed();
+  }
+
+  /** A model has come whose nodes usually have their names, or may have them. */
+  allow({ hasNames, canHaveNames }) {
+    this.names.checked = canHaveNames && (this.hasNames ?? hasNames);
+    this.names.disabled = !canHaveNames;
+  }
+}
+
+/** The factor, of one digit, at which the displacements of an increment are seen on a structure of that size. */
+export function fittedExaggeration(increment, size) {
+  const most = Object.values(increment.displacements).reduce((sum, one) => Math.max(sum, Math.hypot(...one)), 0);
+  if (most === 0) return 1;
+  return Number(((SEEN * size) / most).toPrecision(1));
+}
