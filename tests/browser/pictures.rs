@@ -45,6 +45,7 @@ async fn the_readmes_pictures_show_what_the_page_shows() {
         browser.until("document.getElementById('path-plot').data?.some(({name}) => name === 'exact')").await;
         browser.until("document.querySelector('#directions table') !== null").await;
         browser.until("document.getElementById('structure-plot').data?.some(({name}) => name === 'cone')").await;
+        browser.until("document.querySelectorAll('#lists .thumbnail polyline').length === 3").await;
         browser.ask("document.activeElement.blur()").await;
         let picture = browser.page.screenshot().await.expect("a picture");
         assert!(picture.starts_with(b"\x89PNG") && picture.len() <= LARGEST, "{name}: {} bytes", picture.len());
