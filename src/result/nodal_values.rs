@@ -24,12 +24,6 @@ impl NodalValues {
         nodes.map(|name| (Arc::from(name), vec![0.0; dimension])).collect()
     }
 
-    /// Of the same nodes, every component times a factor.
-    pub(crate) fn scaled(&self, components: &[f64], factor: f64) -> Self {
-        let values = components.iter().map(|value| value * factor).collect();
-        Self { places: Arc::clone(&self.places), values }
-    }
-
     /// Of the same nodes, with other components, node by node.
     pub(crate) fn with_components(&self, components: Vec<f64>) -> Self {
         Self { places: Arc::clone(&self.places), values: components }

@@ -53,8 +53,10 @@ class Drawing {
   elements(now) {
     const { model, traces } = this;
     const spring = { color: fromSheet("--text"), width: 2, dash: "dash" };
+    const beam = { color: fromSheet("--text"), width: 3 };
     const bars = [];
     for (const item of model.elements ?? []) {
+      if (item.kind === "rotational_spring") continue;
       const ends = item.nodes.map((name) => now.get(name));
       const before = item.nodes.map((name) => model.nodes[name]);
       if (ends.includes(undefined)) {
@@ -70,7 +72,8 @@ class Drawing {
         continue;
       }
       traces.lines("undeformed", [before], { color: fromSheet("--faint"), width: 1.5, dash: "dot" });
-      if (item.kind !== "bar") traces.lines("spring", [ends], spring, `spring ${item.nodes.join(" – ")}`);
+      if (item.kind === "beam") traces.lines("beam", [ends], beam, `beam ${item.nodes.join(" – ")}`);
+      else if (item.kind !== "bar") traces.lines("spring", [ends], spring, `spring ${item.nodes.join(" – ")}`);
       else bars.push([ends, tension(item, ends[0], ends[1], before[0], before[1]), item.nodes.join(" – ")]);
     }
     const most = bars.reduce((sum, [, force]) => Math.max(sum, Math.abs(force)), 1e-300);
