@@ -28,7 +28,7 @@ use crate::mechanics::contact::ContactPair;
 use crate::mechanics::problem::node_contact_forces::Corner;
 use crate::mechanics::structure::Structure;
 use crate::mechanics::structure::element_list::ElementList;
-use crate::model::request::{Analysis, JobRequest};
+use crate::model::request::{Analysis, JobRequest, Model};
 use crate::model::{InputError, InputErrors};
 use crate::resources::budget::{self, Breach, Budget};
 use crate::result::nodal_values::NodalValues;
@@ -72,6 +72,13 @@ pub(crate) struct AdditionalParts {
     pub elements: ElementList,
     /// Contacts, each with the names of its node and its obstacle.
     pub contacts: Vec<(&'static str, &'static str, ContactPair)>,
+}
+
+/// Zero displacements of all nodes, with the rotations of those that have one.
+fn still(model: &Model) -> NodalValues {
+    let components = |rotates: bool| vec![0.0; model.dimension + usize::from(rotates)];
+    let nodes = model.nodes.keys().zip(model.rotating_nodes());
+    nodes.map(|(name, rotates)| (Arc::from(name.as_str()), components(rotates))).collect()
 }
 
 impl Scene {
@@ -172,12 +179,7 @@ impl Scene {
             left_out,
             warnings: warnings::warnings(model),
         };
-        let named = model
-            .nodes
-            .keys()
-            .zip(model.rotating_nodes())
-            .map(|(name, rotates)| (Arc::from(name.as_str()), vec![0.0; model.dimension + usize::from(rotates)]));
-        let no_displacements = named.collect();
+        let no_displacements = still(model);
         let analysis = request.analysis.clone();
         let asked_rows = crate::continuation::scene::recorded_contacts::asked_rows(request);
         let jumps = crate::continuation::scene::omitted_features::jumps(&analysis, &structure);
