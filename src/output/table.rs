@@ -2,7 +2,8 @@
 //!
 //! The request determines the columns: one for every component of every recorded node, a group for every contact that may
 //! have a row, such as `tip.x`, `tip.y`, `tip/floor.status`, `tip/floor.gap`, and the forces of recorded elements and supports,
-//! such as `elements/0.axial_force` and `pin.reaction.x`. Values are assigned by name; missing values are empty cells.
+//! such as `elements/0.axial_force` and `pin.reaction.x`. A node with a rotation has it last, as `tip.rz`; a beam has the forces and
+//! the moment of its two ends, `elements/0.start.axial_force` and so on. Values are assigned by name; missing values are empty cells.
 
 use crate::check::measure::Errors;
 use crate::model::JobRequest;
@@ -19,20 +20,51 @@ pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 #[derive(Debug, Clone)]
 pub struct Table {
     dimension: usize,
-    nodes: Vec<String>,
+    nodes: Vec<NodeColumns>,
     contacts: Vec<ContactColumns>,
     elements: Vec<ElementColumns>,
     /// Nodes with recorded reactions of their supports.
-    supports: Vec<String>,
+    supports: Vec<NodeColumns>,
 }
 
 #[derive(Debug, Clone)]
 struct ElementColumns {
     place: u64,
     label: String,
-    /// An axial force in place of a vector.
-    is_bar: bool,
+    forces: ForceColumns,
 }
+
+/// What an element has columns of.
+#[derive(Debug, Clone, Copy)]
+enum ForceColumns {
+    Axial,
+    Vector,
+    Ends,
+    Moment,
+}
+
+#[derive(Debug, Clone)]
+struct NodeColumns {
+    name: String,
+    /// With a rotation after the displacements, or a moment after the forces.
+    has_rotation: bool,
+}
+
+impl NodeColumns {
+    fn names(&self, what: &str, dimension: usize) -> impl Iterator<Item = String> {
+        let rotation = self.has_rotation.then_some("rz");
+        let axes = AXES.into_iter().take(dimension).chain(rotation);
+        axes.map(move |axis| format!("{}{what}.{axis}", self.name))
+    }
+
+    fn count(&self, dimension: usize) -> usize {
+        dimension + usize::from(self.has_rotation)
+    }
+}
+
+/// Names of a beam's ends in columns, and of what they have.
+const ENDS: [&str; 2] = ["start", "end"];
+const AT_END: [&str; 3] = ["axial_force", "shear_force", "bending_moment"];
 
 #[derive(Debug, Clone)]
 struct ContactColumns {
@@ -47,7 +79,12 @@ impl Table {
         let named = record.and_then(|record| record.nodes.as_ref());
         let named: Option<HashSet<&String>> = named.map(|nodes| nodes.iter().collect());
         let is_named = |name: &&String| named.as_ref().is_none_or(|named| named.contains(*name));
-        let nodes = model.nodes.keys().filter(is_named).cloned().collect();
+        let rotating = model.rotating_nodes();
+        let node_columns = |name: &str| NodeColumns {
+            name: name.to_owned(),
+            has_rotation: model.nodes.get_index_of(name).is_some_and(|number| rotating[number]),
+        };
+        let nodes = model.nodes.keys().filter(is_named).map(|name| node_columns(name)).collect();
         let named = record.and_then(Record::named_contacts);
         let named: Option<HashSet<(&str, &str)>> =
             named.map(|named| named.iter().map(|one| (one.node.as_str(), one.obstacle.as_str())).collect());
@@ -59,14 +96,19 @@ impl Table {
         let element = |place: usize| ElementColumns {
             place: place as u64,
             label: element_label(model, place),
-            is_bar: matches!(model.elements[place], Element::Bar { .. }),
+            forces: match model.elements[place] {
+                Element::Bar { .. } => ForceColumns::Axial,
+                Element::Spring { .. } => ForceColumns::Vector,
+                Element::Beam { .. } => ForceColumns::Ends,
+                Element::RotationalSpring { .. } => ForceColumns::Moment,
+            },
         };
         Self {
             dimension: model.dimension,
             nodes,
             contacts: contacts.map(columns).collect(),
             elements: recorded_elements(request).into_iter().map(element).collect(),
-            supports: recorded_supports(request).into_iter().map(str::to_owned).collect(),
+            supports: recorded_supports(request).into_iter().map(node_columns).collect(),
         }
     }
 
@@ -78,7 +120,7 @@ impl Table {
                 .map(str::to_owned)
                 .into();
         for node in &self.nodes {
-            names.extend(axes().map(|axis| format!("{node}.{axis}")));
+            names.extend(node.names("", self.dimension));
         }
         for ContactColumns { node, obstacle } in &self.contacts {
             names.extend(["status", "gap", "normal_reaction"].map(|name| format!("{node}/{obstacle}.{name}")));
@@ -87,15 +129,18 @@ impl Table {
             }
             names.extend(axes().map(|axis| format!("{node}/{obstacle}.reaction.{axis}")));
         }
-        for ElementColumns { label, is_bar, .. } in &self.elements {
-            if *is_bar {
-                names.push(format!("elements/{label}.axial_force"));
-            } else {
-                names.extend(axes().map(|axis| format!("elements/{label}.force.{axis}")));
+        for ElementColumns { label, forces, .. } in &self.elements {
+            match forces {
+                ForceColumns::Axial => names.push(format!("elements/{label}.axial_force")),
+                ForceColumns::Vector => names.extend(axes().map(|axis| format!("elements/{label}.force.{axis}"))),
+                ForceColumns::Ends => names.extend(
+                    ENDS.iter().flat_map(|end| AT_END.iter().map(move |what| format!("elements/{label}.{end}.{what}"))),
+                ),
+                ForceColumns::Moment => names.push(format!("elements/{label}.moment")),
             }
         }
         for node in &self.supports {
-            names.extend(axes().map(|axis| format!("{node}.reaction.{axis}")));
+            names.extend(node.names(".reaction", self.dimension));
         }
         names.extend(axes().map(|axis| format!("applied_force_{axis}")));
         names.extend(["external_work", "strain_energy", "dissipated"].map(str::to_owned));
@@ -137,8 +182,8 @@ impl Table {
         line.text(increment.point.event.as_deref().unwrap_or_default());
         let tangents = self.dimension - 1;
         for node in &self.nodes {
-            let values = increment.displacements.get(node.as_str()).unwrap_or_default();
-            line.numbers(values, self.dimension);
+            let values = increment.displacements.get(&node.name).unwrap_or_default();
+            line.numbers(values, node.count(self.dimension));
         }
         // Rows and columns are in the order of the model.
         let mut rows = increment.contacts.iter().peekable();
@@ -155,15 +200,25 @@ impl Table {
         let mut rows = increment.elements.iter().peekable();
         for columns in &self.elements {
             let state = rows.next_if(|row| row.element == columns.place);
-            if columns.is_bar {
-                line.optional(state.and_then(|state| state.axial_force));
-            } else {
-                let force = state.and_then(|state| state.force.as_deref());
-                line.numbers(force.unwrap_or_default(), self.dimension);
+            match columns.forces {
+                ForceColumns::Axial => line.optional(state.and_then(|state| state.axial_force)),
+                ForceColumns::Vector => {
+                    let force = state.and_then(|state| state.force.as_deref());
+                    line.numbers(force.unwrap_or_default(), self.dimension);
+                }
+                ForceColumns::Ends => {
+                    let ends = state.and_then(|state| state.ends);
+                    for place in 0..ENDS.len() {
+                        let values = ends
+                            .map(|ends| [ends[place].axial_force, ends[place].shear_force, ends[place].bending_moment]);
+                        line.numbers(values.as_ref().map_or(&[], <[f64; 3]>::as_slice), AT_END.len());
+                    }
+                }
+                ForceColumns::Moment => line.optional(state.and_then(|state| state.moment)),
             }
         }
         for node in &self.supports {
-            line.numbers(increment.supports.get(node.as_str()).unwrap_or_default(), self.dimension);
+            line.numbers(increment.supports.get(&node.name).unwrap_or_default(), node.count(self.dimension));
         }
         line.numbers(&increment.applied_forces, self.dimension);
         let (energy, diagnostics) = (&increment.energy, &increment.diagnostics);

@@ -20,7 +20,8 @@ pub struct Increment {
     /// Dimensionless arc length of this increment: 0 where a stage begins, and where a contact change is found at the very
     /// point before.
     pub step: f64,
-    /// Node name to displacement (length); the nodes that `analysis.record` asks for.
+    /// Node name to displacement (length), in the plane with the rotation (radians, counter-clockwise, turns counted) last
+    /// where the node has one; the nodes that `analysis.record` asks for.
     #[cfg_attr(feature = "server", schema(value_type = indexmap::IndexMap<String, Vec<f64>>))]
     pub displacements: NodalValues,
     /// In the model's order; those that `analysis.record` asks for.
@@ -28,8 +29,8 @@ pub struct Increment {
     /// Forces of the elements, in the model's order; those that `analysis.record` asks for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub elements: Vec<ElementState>,
-    /// Name of a supported node to the force of the supports on the structure there, in global axes; 0 along free
-    /// components. The nodes that `analysis.record` asks for.
+    /// Name of a supported node to the force of the supports on the structure there, in global axes, with the
+    /// moment last where the node has a rotation; 0 along free components. The nodes that `analysis.record` asks for.
     #[serde(default, skip_serializing_if = "NodalValues::is_empty")]
     #[cfg_attr(feature = "server", schema(value_type = indexmap::IndexMap<String, Vec<f64>>))]
     pub supports: NodalValues,
@@ -109,6 +110,26 @@ pub struct ElementState {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "server", schema(value_type = Option<Vec<f64>>))]
     pub force: Option<SpaceVector>,
+    /// Of a beam: forces and moment at its first and its last node.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ends: Option<[BeamEndForces; 2]>,
+    /// Of a rotational spring: its stiffness times the rotation of its first node relative to the second, or to the ground.
+    /// The spring acts on its first node with the opposite of this moment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub moment: Option<f64>,
+}
+
+/// The force in a beam at one of its ends, in the axes of the deformed cross-section: `t` along the beam, `n` a quarter
+/// turn counter-clockwise from it. Forces are those on the part of the beam before the cross-section.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct BeamEndForces {
+    /// Along `t`, tension positive.
+    pub axial_force: f64,
+    /// Along `n`.
+    pub shear_force: f64,
+    /// EI times the change of curvature: positive where the rotation grows along the beam.
+    pub bending_moment: f64,
 }
 
 /// Status of a contact.

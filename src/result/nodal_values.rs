@@ -19,17 +19,6 @@ pub struct NodalValues {
 type Places = IndexMap<Arc<str>, Range<usize>>;
 
 impl NodalValues {
-    /// Of nodes with so many components each, all zero.
-    pub fn zero<'a>(nodes: impl Iterator<Item = &'a str>, dimension: usize) -> Self {
-        nodes.map(|name| (Arc::from(name), vec![0.0; dimension])).collect()
-    }
-
-    /// Of the same nodes, every component times a factor.
-    pub(crate) fn scaled(&self, components: &[f64], factor: f64) -> Self {
-        let values = components.iter().map(|value| value * factor).collect();
-        Self { places: Arc::clone(&self.places), values }
-    }
-
     /// Of the same nodes, with other components, node by node.
     pub(crate) fn with_components(&self, components: Vec<f64>) -> Self {
         Self { places: Arc::clone(&self.places), values: components }

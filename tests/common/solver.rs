@@ -175,7 +175,14 @@ fn increment(index: u64, run: u64) -> Increment {
             slip_total: [along].into_iter().collect(),
             indeterminate: false,
         }],
-        elements: vec![ElementState { element: 0, name: None, axial_force: Some(-along), force: None }],
+        elements: vec![ElementState {
+            element: 0,
+            name: None,
+            axial_force: Some(-along),
+            force: None,
+            ends: None,
+            moment: None,
+        }],
         supports: [("pin".into(), vec![0.1 * along, -along])].into_iter().collect(),
         applied_forces: [along, 0.0].into_iter().collect(),
         point: Point {

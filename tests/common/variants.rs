@@ -20,6 +20,12 @@ pub fn in_units(mut request: JobRequest, length: f64, force: f64) -> JobRequest 
                 rest_length.iter_mut().for_each(|rest| *rest *= length);
             }
             Element::Spring { stiffness, .. } => stiffness.iter_mut().for_each(|row| scale(row, force / length)),
+            Element::Beam { axial_stiffness, bending_stiffness, shear_stiffness, .. } => {
+                *axial_stiffness *= force;
+                *bending_stiffness *= force * length * length;
+                shear_stiffness.iter_mut().for_each(|shear| *shear *= force);
+            }
+            Element::RotationalSpring { stiffness, .. } => *stiffness *= force * length,
         }
     }
     for obstacle in request.model.obstacles.values_mut() {
@@ -36,7 +42,12 @@ pub fn in_units(mut request: JobRequest, length: f64, force: f64) -> JobRequest 
     }
     for stage in &mut request.model.stages {
         stage.forces.values_mut().for_each(|values| scale(values, force));
-        stage.displacements.values_mut().for_each(|values| scale(values, length));
+        stage.moments.values_mut().for_each(|moment| *moment *= force * length);
+        // A third component in the plane is a rotation.
+        for values in stage.displacements.values_mut() {
+            let dimension = request.model.dimension;
+            values.iter_mut().take(dimension).for_each(|value| *value *= length);
+        }
         stage.obstacle_motion.values_mut().for_each(|values| scale(values, length));
         if let Some(until) = &mut stage.until
             && let Some(bound) = &mut until.displacement

@@ -5,6 +5,7 @@ mod common;
 
 mod bad_input;
 mod bad_studies;
+mod beams;
 mod bounds;
 mod by_program;
 mod capstan;

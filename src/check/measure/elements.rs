@@ -1,9 +1,10 @@
 //! Forces and strain energy of the posted elements, for the measure only.
 
+use crate::check::measure::beams::{BeamResponse, MeasuredBeam};
 use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::model::request::{Element as Posted, Model, Strain};
 
-/// An element with its nodes numbered.
+/// An element with its nodes numbered; beams are in `beams`.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum MeasuredElement {
     Bar {
@@ -24,6 +25,40 @@ pub(super) enum MeasuredElement {
         /// The rows of the stiffness matrix.
         stiffness: [MeasuredVector; 3],
     },
+    Beam(MeasuredBeam),
+    RotationalSpring {
+        node: usize,
+        /// `None` is the ground.
+        other: Option<usize>,
+        /// Moment per angle.
+        stiffness: f64,
+    },
+}
+
+/// What an element does to its nodes.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum MeasuredResponse {
+    /// Of a bar or a spring.
+    Forces(ElementResponse),
+    Beam(BeamResponse),
+    /// Of a rotational spring: the moment of its first node on it, with its rounding error.
+    Moment {
+        node: usize,
+        other: Option<usize>,
+        moment: f64,
+        rounding: f64,
+        energy: f64,
+    },
+}
+
+impl MeasuredResponse {
+    pub fn energy(&self) -> f64 {
+        match self {
+            Self::Forces(response) => response.energy,
+            Self::Beam(response) => response.energy,
+            Self::Moment { energy, .. } => *energy,
+        }
+    }
 }
 
 /// The nodal forces on an element, opposite at the two nodes, and the energy of the element.
@@ -57,6 +92,11 @@ impl MeasuredElement {
                 let (stiffness, prestress, strain) = (*axial_stiffness, *prestress, *strain);
                 Some(Self::Bar { ends, reference, before, rest, stiffness, prestress, strain })
             }
+            Posted::Beam { .. } => Some(Self::Beam(MeasuredBeam::new(model, posted)?)),
+            Posted::RotationalSpring { nodes, stiffness, name: _ } => {
+                let other = nodes.get(1).map(|name| index(name).ok_or(())).transpose().ok()?;
+                Some(Self::RotationalSpring { node: index(nodes.first()?)?, other, stiffness: *stiffness })
+            }
             Posted::Spring { nodes, stiffness, name: _ } => {
                 let row = |k: usize| stiffness.get(k).map_or_else(MeasuredVector::zeros, |row| padded(row));
                 let other = nodes.get(1).map(|name| index(name).ok_or(())).transpose().ok()?;
@@ -70,12 +110,22 @@ impl MeasuredElement {
         match self {
             Self::Bar { rest, stiffness, .. } => stiffness / rest,
             Self::Spring { stiffness, .. } => stiffness.iter().map(MeasuredVector::norm).fold(0.0, f64::max),
+            Self::Beam(beam) => beam.stiffness(),
+            Self::RotationalSpring { .. } => 0.0,
         }
     }
 
-    /// The response to the given displacements of the nodes.
-    pub fn response(&self, u: &[MeasuredVector]) -> ElementResponse {
-        match self {
+    /// The response to the given displacements and rotations of the nodes.
+    pub fn response(&self, u: &[MeasuredVector], rotations: &[f64]) -> MeasuredResponse {
+        MeasuredResponse::Forces(match self {
+            Self::Beam(beam) => return MeasuredResponse::Beam(beam.response(u, rotations)),
+            Self::RotationalSpring { node, other, stiffness } => {
+                let turn = rotations[*node] - other.map_or(0.0, |other| rotations[other]);
+                let turned = rotations[*node].abs().max(other.map_or(0.0, |other| rotations[other].abs()));
+                let (moment, rounding) = (stiffness * turn, ROUNDINGS * f64::EPSILON * stiffness * turned);
+                let (node, other, energy) = (*node, *other, 0.5 * moment * turn);
+                return MeasuredResponse::Moment { node, other, moment, rounding, energy };
+            }
             Self::Bar { ends, reference, before, rest, stiffness, prestress, strain } => {
                 let change = u[ends[1]] - u[ends[0]];
                 let deformed = reference + change;
@@ -119,6 +169,6 @@ impl MeasuredElement {
                 let energy = 0.5 * force.dot(&relative);
                 ElementResponse { first: *other, second: *node, force, axial: None, energy, rounding }
             }
-        }
+        })
     }
 }

@@ -7,11 +7,12 @@
 //! Σ F = 0,   Σ (x - c) × F = 0,   x: deformed position of the node,  c: centre of the box around the undeformed nodes
 //! ```
 
-use crate::check::measure::elements::ElementResponse;
+use crate::check::measure::beams::BeamResponse;
+use crate::check::measure::elements::MeasuredResponse;
 use crate::check::measure::errors::{Errors, worse};
 use crate::check::measure::posted::{Posted, PostedLoading};
 use crate::check::measure::vector::{MeasuredVector, largest, padded};
-use crate::result::increment::{ElementState, Increment};
+use crate::result::increment::{BeamEndForces, ElementState, Increment};
 
 /// Error of a sum of products of rounded numbers, in units of the machine epsilon.
 const ROUNDINGS: f64 = 64.0;
@@ -36,6 +37,11 @@ impl Balance {
         self.moved = self.moved.max(largest(displacement));
     }
 
+    /// Adds a moment from outside.
+    pub fn add_moment(&mut self, moment: f64) {
+        self.moment.z += moment;
+    }
+
     /// Includes the size of a force between two nodes.
     pub fn between(&mut self, force: &MeasuredVector) {
         self.sizes += largest(force);
@@ -54,28 +60,45 @@ impl Balance {
     }
 }
 
-/// The forces of an increment's supports, in the order of the posted supports; `None` where they do not fit the model.
+/// The forces and moments of an increment's supports, in the order of the posted supports; `None` where they do not fit the model.
 pub(super) fn reactions<'a>(
     posted: &'a Posted,
     increment: &'a Increment,
-) -> Option<impl Iterator<Item = (usize, MeasuredVector)> + 'a> {
+) -> Option<impl Iterator<Item = (usize, MeasuredVector, f64)> + 'a> {
     let fits = increment.supports.len() == posted.supports.len()
-        && posted
-            .supports
-            .iter()
-            .zip(increment.supports.iter())
-            .all(|(node, (name, values))| **name == *posted.nodes[*node].name && values.len() == posted.dimension);
-    fits.then(|| posted.supports.iter().copied().zip(increment.supports.values().map(padded)))
+        && posted.supports.iter().zip(increment.supports.iter()).all(|(node, (name, values))| {
+            let node = &posted.nodes[*node];
+            **name == *node.name && values.len() == posted.dimension + usize::from(node.has_rotation)
+        });
+    let reaction =
+        |values: &[f64]| (padded(&values[..posted.dimension]), values.get(posted.dimension).copied().unwrap_or(0.0));
+    fits.then(move || {
+        let reactions = increment.supports.values().map(reaction);
+        posted.supports.iter().copied().zip(reactions).map(|(node, (force, moment))| (node, force, moment))
+    })
 }
 
-/// Adds to `errors` what is reported of an element's force; `force_scale` makes forces dimensionless.
+/// Adds to `errors` what is reported of an element; `force_scale` and `length` make forces and moments dimensionless.
 pub(super) fn judge_element(
     state: &ElementState,
-    response: &ElementResponse,
+    response: &MeasuredResponse,
     dimension: usize,
-    force_scale: f64,
+    (force_scale, length): (f64, f64),
     errors: &mut Errors,
 ) {
+    let response = match response {
+        MeasuredResponse::Forces(response) => response,
+        MeasuredResponse::Beam(response) => {
+            let off = state.ends.map_or(f64::INFINITY, |ends| off_ends(&ends, response, length));
+            errors.reported = worse(errors.reported, off / force_scale);
+            return;
+        }
+        MeasuredResponse::Moment { moment, rounding, .. } => {
+            let off = state.moment.map_or(f64::INFINITY, |reported| (reported - moment).abs());
+            errors.reported = worse(errors.reported, (off - rounding.min(off)) / (force_scale * length));
+            return;
+        }
+    };
     let off = match (state.axial_force, &state.force, response.axial) {
         (Some(reported), None, Some(axial)) => (reported - axial).abs(),
         (None, Some(reported), None) if reported.len() == dimension => {
@@ -84,6 +107,24 @@ pub(super) fn judge_element(
         _ => f64::INFINITY,
     };
     errors.reported = worse(errors.reported, (off - response.rounding.min(off)) / force_scale);
+}
+
+/// The largest error of what is reported of a beam's ends beyond rounding, as a force.
+fn off_ends(ends: &[BeamEndForces; 2], response: &BeamResponse, length: f64) -> f64 {
+    let (mut of_forces, mut of_moments) = (0.0_f64, 0.0_f64);
+    for share in response.nodes.iter().flatten() {
+        of_forces = of_forces.max(share.force_rounding);
+        of_moments = of_moments.max(share.moment_rounding);
+    }
+    let off = ends.iter().zip(&response.ends).flat_map(|(end, [axial, shear, moment])| {
+        let beyond = |off: f64, allowed: f64| off.abs() - allowed.min(off.abs());
+        [
+            beyond(end.axial_force - axial, of_forces),
+            beyond(end.shear_force - shear, of_forces),
+            beyond(end.bending_moment - moment, of_moments) / length,
+        ]
+    });
+    off.fold(0.0, worse)
 }
 
 /// Adds to `errors` what is reported of the sum of the loads.

@@ -16,6 +16,7 @@ const VERSION: u32 = 3;
 #[derive(Debug, Clone)]
 pub(super) struct PreviousPoint {
     pub displacements: Vec<MeasuredVector>,
+    pub rotations: Vec<f64>,
     pub shifts: Vec<MeasuredVector>,
     /// `-r_t/|r_t|` in space of the contacts that are on their friction cones; in 3D only.
     pub directions: BTreeMap<usize, MeasuredVector>,
@@ -30,6 +31,7 @@ impl PreviousPoint {
     pub fn at_rest(posted: &Posted) -> Self {
         Self {
             displacements: vec![MeasuredVector::zeros(); posted.nodes.len()],
+            rotations: vec![0.0; posted.rotations()],
             shifts: vec![MeasuredVector::zeros(); posted.moving],
             directions: BTreeMap::new(),
             slips: BTreeMap::new(),
@@ -51,6 +53,9 @@ pub struct JudgeHistory {
     arc_length: f64,
     /// One displacement for each node.
     displacements: Vec<MeasuredVector>,
+    /// One rotation for each node, then those of released ends; absent where there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    rotations: Vec<f64>,
     /// The contacts with a direction of slip, in order, and their directions.
     directions: Vec<(usize, MeasuredVector)>,
     /// The contacts that have slipped, in order, and the sums of their slips.
@@ -87,6 +92,7 @@ pub fn history_of(judge: &Judge) -> JudgeHistory {
         load: judge.before.load,
         arc_length: judge.before.arc_length,
         displacements: judge.before.displacements.clone(),
+        rotations: if judge.posted.has_rotations() { judge.before.rotations.clone() } else { Vec::new() },
         directions: judge.before.directions.iter().map(|(contact, direction)| (*contact, *direction)).collect(),
         slips: judge.before.slips.iter().map(|(contact, slip)| (*contact, *slip)).collect(),
         largest_force: judge.largest_force,
@@ -105,6 +111,7 @@ pub fn take_up(mut judge: Judge, history: JudgeHistory) -> Result<Judge, History
         load,
         arc_length,
         displacements,
+        mut rotations,
         directions,
         slips,
         largest_force,
@@ -115,8 +122,12 @@ pub fn take_up(mut judge: Judge, history: JudgeHistory) -> Result<Judge, History
     }
     let posted = &judge.posted;
     let contacts = posted.contacts.len();
+    if rotations.is_empty() {
+        rotations.resize(posted.rotations(), 0.0);
+    }
     for (what, found, expected) in [
         ("nodes", displacements.len(), posted.nodes.len()),
+        ("rotations", rotations.len(), posted.rotations()),
         ("contacts", directions.iter().fold(contacts, |most, (contact, _)| most.max(contact + 1)), contacts),
         ("contacts", slips.iter().fold(contacts, |most, (contact, _)| most.max(contact + 1)), contacts),
         ("finished stages", reached.len(), reached.len().min(posted.stages.len().saturating_sub(1))),
@@ -137,6 +148,7 @@ pub fn take_up(mut judge: Judge, history: JudgeHistory) -> Result<Judge, History
     judge.held = held;
     let mut before = PreviousPoint {
         displacements,
+        rotations,
         shifts: loading.shifts.clone(),
         load,
         arc_length,

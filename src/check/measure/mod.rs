@@ -3,7 +3,8 @@
 //!
 //! ```text
 //! equilibrium     max |Σ N d + K Δu - s f - f_held - Σ n r_n - Σ t r_t| / F   free components; F: largest force so far
-//! support         max |u - s u_given - u_held| / ℓ                           supported components
+//!                 |moment| / (F ℓ) of free rotations, by the formulas of `beams`
+//! support         max |u - s u_given - u_held| / ℓ                           supported components, rotations
 //! contact         max |min(g/ℓ, r_n/F)|                                      natural map of 0 <= g ⊥ r_n >= 0
 //! friction        max |t - P(t - x)|,   t = r_t/F,   x = Tᵀ(Δu - Δd)/ℓ        natural map of Coulomb's law;
 //!                 P: projection onto the disc of radius μ r_n/F;  d: the obstacle's translation
@@ -44,13 +45,14 @@
 //! | file | contents |
 //! |---|---|
 //! | `errors` | the errors and their maxima |
-//! | `posted`, `elements`, `obstacles`, `vector` | the posted model, with indices instead of names |
+//! | `posted`, `elements`, `beams`, `obstacles`, `vector` | the posted model, with indices instead of names |
 //! | `contacts` | the check of one contact |
 //! | `global` | the balance of the whole structure, and the forces as reported |
 //! | `rows`, `apart` | the contacts with a row in an increment, and the contacts without a row |
 //! | `history` | the history of a judge, for checkpoints |
 
 pub(crate) mod apart;
+pub(crate) mod beams;
 pub(crate) mod contacts;
 pub(crate) mod elements;
 pub(crate) mod errors;
@@ -68,13 +70,14 @@ use crate::model::JobRequest;
 use crate::result::increment::Increment;
 use apart::Apart;
 use contacts::Seen;
-use elements::{ElementResponse, MeasuredElement};
+use elements::{MeasuredElement, MeasuredResponse};
 use errors::worse;
 use global::Balance;
 use history::PreviousPoint;
 use obstacles::MeasuredFrame;
 use posted::{Posted, PostedLoading};
 use rows::{ContactRows, RowChange};
+use std::f64::consts::TAU;
 use vector::{MeasuredVector, largest, padded};
 
 /// Forces below this fraction of the force that stretches the stiffest element by the displacement scale count as zero.
@@ -108,13 +111,51 @@ pub struct Judge {
 struct Workspace {
     loading: PostedLoading,
     displacements: Vec<MeasuredVector>,
+    /// Of nodes that have one, otherwise 0; then those of released ends.
+    rotations: Vec<f64>,
     /// Unbalanced force of each node.
     balance: Vec<MeasuredVector>,
     /// Rounding error of the unbalanced force.
     rounding: Vec<f64>,
+    /// Unbalanced moment of each node, and its rounding error.
+    moments: Vec<(f64, f64)>,
     frames: Vec<MeasuredFrame>,
     /// Of the elements whose forces the increment reports, in order.
-    responses: Vec<ElementResponse>,
+    responses: Vec<MeasuredResponse>,
+}
+
+impl Workspace {
+    /// Adds the forces and moments of a beam or a rotational spring to its nodes; returns the largest, as a force.
+    fn add_turning(&mut self, response: &MeasuredResponse, outside: &mut Balance, length: f64) -> f64 {
+        let mut most = 0.0_f64;
+        let add_moment = |moments: &mut Vec<(f64, f64)>, node: usize, moment: f64, rounding: f64| {
+            moments[node].0 += moment;
+            moments[node].1 += rounding;
+            moment.abs() / length
+        };
+        match response {
+            MeasuredResponse::Forces(_) => {}
+            MeasuredResponse::Beam(response) => {
+                self.rotations.extend(response.released.iter().flatten());
+                for share in response.nodes.iter().flatten() {
+                    self.balance[share.node] += share.force;
+                    self.rounding[share.node] += share.force_rounding;
+                    outside.between(&share.force);
+                    most = most.max(largest(&share.force));
+                    let of_moment = add_moment(&mut self.moments, share.node, share.moment, share.moment_rounding);
+                    most = most.max(of_moment);
+                }
+            }
+            MeasuredResponse::Moment { node, other, moment, rounding, .. } => {
+                most = add_moment(&mut self.moments, *node, *moment, *rounding);
+                match other {
+                    Some(other) => drop(add_moment(&mut self.moments, *other, -moment, *rounding)),
+                    None => outside.add_moment(-moment),
+                }
+            }
+        }
+        most
+    }
 }
 
 impl Judge {
@@ -131,7 +172,9 @@ impl Judge {
         let no_force = (NO_FORCE * stiffest * displacement_scale).max(f64::MIN_POSITIVE);
         let mut apart = Apart::new(&posted, displacement_scale);
         apart.begin(&posted, &none, &displacements);
-        let initial_strain = posted.elements.iter().map(|element| element.response(&displacements).energy).sum();
+        let rotations = vec![0.0; nodes];
+        let at_rest = posted.elements.iter().map(|element| element.response(&displacements, &rotations).energy());
+        let initial_strain = at_rest.sum();
         Self {
             length: displacement_scale,
             no_force,
@@ -144,7 +187,16 @@ impl Judge {
             initial_strain,
             rows: ContactRows::new(request),
             apart,
-            work: Workspace { loading: none, displacements, balance, rounding, frames, responses: Vec::new() },
+            work: Workspace {
+                loading: none,
+                displacements,
+                rotations,
+                balance,
+                rounding,
+                moments: vec![(0.0, 0.0); nodes],
+                frames,
+                responses: Vec::new(),
+            },
             posted,
         }
     }
@@ -191,6 +243,7 @@ impl Judge {
         self.apart.judge(&self.posted, &self.work.loading, &self.work.displacements, distance, &mut errors);
         self.energy(increment, strain, &mut errors);
         std::mem::swap(&mut self.before.displacements, &mut self.work.displacements);
+        std::mem::swap(&mut self.before.rotations, &mut self.work.rotations);
         self.before.shifts.copy_from_slice(&self.work.loading.shifts);
         self.before.load = increment.load_factor;
         self.before.arc_length = increment.arc_length;
@@ -200,6 +253,7 @@ impl Judge {
     /// Sets the stage, displacements and load of an increment; returns `false` if the increment does not fit the model.
     fn read(&mut self, increment: &Increment) -> bool {
         let posted = &self.posted;
+        self.work.rotations.resize(posted.nodes.len(), 0.0);
         let known = posted.stages[self.stage..].iter().position(|stage| stage.name == *increment.stage);
         for _ in 0..known.unwrap_or(0) {
             self.work.loading.set(&self.held, &posted.stages[self.stage], self.before.load);
@@ -218,8 +272,10 @@ impl Judge {
         for (index, (node, displacement)) in posted.nodes.iter().zip(&mut self.work.displacements).enumerate() {
             let in_place = increment.displacements.get_index(index).filter(|(name, _)| ***name == node.name);
             let found = in_place.map(|(_, values)| values).or_else(|| increment.displacements.get(node.name.as_str()));
-            let found = found.filter(|values| values.len() == posted.dimension);
-            *displacement = found.map_or_else(MeasuredVector::zeros, padded);
+            let count = posted.dimension + usize::from(node.has_rotation);
+            let found = found.filter(|values| values.len() == count);
+            *displacement = found.map_or_else(MeasuredVector::zeros, |values| padded(&values[..posted.dimension]));
+            self.work.rotations[index] = found.and_then(|values| values.get(posted.dimension)).copied().unwrap_or(0.0);
             fits &= found.is_some();
         }
         fits
@@ -236,15 +292,33 @@ impl Judge {
         for (node, (balance, load)) in work.balance.iter_mut().zip(&work.loading.forces).enumerate() {
             *balance = -load;
             most = most.max(largest(load));
+            let moment = work.loading.moments[node];
+            work.moments[node] = (-moment, 0.0);
+            most = most.max(moment.abs() / self.length);
+            outside.add_moment(moment);
             outside.add(posted, node, &work.displacements[node], load);
         }
         let mut strain = 0.0;
         let mut recorded = increment.elements.iter().peekable();
         for (index, element) in posted.elements.iter().enumerate() {
-            let response = element.response(&work.displacements);
-            if recorded.next_if(|state| state.element == index as u64).is_some() {
-                work.responses.push(response);
-            }
+            let response = element.response(&work.displacements, &work.rotations);
+            strain += response.energy();
+            let is_recorded = recorded.next_if(|state| state.element == index as u64).is_some();
+            let response = match response {
+                MeasuredResponse::Forces(response) => {
+                    if is_recorded {
+                        work.responses.push(MeasuredResponse::Forces(response));
+                    }
+                    response
+                }
+                turning => {
+                    most = most.max(work.add_turning(&turning, &mut outside, self.length));
+                    if is_recorded {
+                        work.responses.push(turning);
+                    }
+                    continue;
+                }
+            };
             match response.axial {
                 Some(_) => outside.between(&response.force),
                 None => {
@@ -255,7 +329,6 @@ impl Judge {
                     }
                 }
             }
-            strain += response.energy;
             most = most.max(largest(&response.force));
             if let Some(first) = response.first {
                 work.balance[first] -= response.force;
@@ -288,7 +361,7 @@ impl Judge {
             errors.reported = f64::MAX;
         }
         for (state, response) in increment.elements.iter().zip(&work.responses) {
-            global::judge_element(state, response, posted.dimension, force, errors);
+            global::judge_element(state, response, posted.dimension, (force, self.length), errors);
         }
         global::judge_loads(increment, &work.loading, posted.dimension, force, errors);
         if increment.supports.is_empty() && !posted.supports.is_empty() {
@@ -298,7 +371,11 @@ impl Judge {
             errors.reported = f64::MAX;
             return;
         };
-        for (node, reaction) in reactions {
+        for (node, reaction, moment) in reactions {
+            balance.add_moment(moment);
+            if !posted.nodes[node].rotation_held {
+                errors.reported = worse(errors.reported, moment.abs() / (force * self.length));
+            }
             balance.add(posted, node, &work.displacements[node], &reaction);
             let held = posted.nodes[node].held;
             let along_free = (0..posted.dimension).filter(|k| !held[*k]).map(|k| reaction[k].abs());
@@ -315,7 +392,11 @@ impl Judge {
             let beyond = |k: usize| balance[k].abs() - rounding.min(balance[k].abs());
             (0..self.posted.dimension).filter(|k| !node.held[*k]).map(beyond)
         });
-        components.fold(0.0, worse)
+        let turning = self.posted.nodes.iter().zip(&self.work.moments);
+        let moments = turning.filter(|(node, _)| node.has_rotation && !node.rotation_held);
+        let beyond =
+            |(_, (moment, rounding)): (_, &(f64, f64))| (moment.abs() - rounding.min(moment.abs())) / self.length;
+        moments.map(beyond).chain(components).fold(0.0, worse)
     }
 
     fn off_support(&self) -> f64 {
@@ -323,7 +404,10 @@ impl Judge {
         let components = self.posted.nodes.iter().zip(given).flat_map(|(node, (found, given))| {
             (0..self.posted.dimension).filter(|k| node.held[*k]).map(|k| (found[k] - given[k]).abs())
         });
-        worse(0.0, components.fold(0.0, worse) / self.length)
+        let turned = self.work.rotations.iter().zip(&self.work.loading.rotations);
+        let rotations = self.posted.nodes.iter().zip(turned).filter(|(node, _)| node.rotation_held);
+        let off_rotation = rotations.map(|(_, (found, given))| (found - given).abs()).fold(0.0, worse);
+        worse(off_rotation, components.fold(0.0, worse) / self.length)
     }
 
     /// The dimensionless distance from the previous increment.
@@ -332,6 +416,13 @@ impl Judge {
             ((increment.load_factor - self.before.load) / self.posted.stages[self.stage].load_scale).powi(2);
         for (after, before) in self.work.displacements.iter().zip(&self.before.displacements) {
             squared += ((after - before) * (1.0 / self.length)).norm_squared();
+        }
+        let nodes = self.posted.nodes.len();
+        for (place, (after, before)) in self.work.rotations.iter().zip(&self.before.rotations).enumerate() {
+            let turned = after - before;
+            // Of a released end whole turns are not known.
+            let whole = if place < nodes { 0.0 } else { (turned / TAU).round() * TAU };
+            squared += (turned - whole).powi(2);
         }
         squared.sqrt()
     }

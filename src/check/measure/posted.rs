@@ -3,7 +3,7 @@
 use crate::check::measure::elements::MeasuredElement;
 use crate::check::measure::obstacles::{MeasuredFrame, MeasuredObstacle};
 use crate::check::measure::vector::{MeasuredVector, largest, padded};
-use crate::model::request::JobRequest;
+use crate::model::request::{JobRequest, Model};
 use indexmap::{IndexMap, IndexSet};
 
 #[derive(Debug, Clone)]
@@ -30,6 +30,8 @@ pub(super) struct PostedNode {
     pub place: MeasuredVector,
     /// Components that a support fixes.
     pub held: [bool; 3],
+    pub has_rotation: bool,
+    pub rotation_held: bool,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -45,7 +47,9 @@ pub(super) struct PostedContact {
 pub(super) struct PostedStage {
     pub name: String,
     forces: PostedLoadPattern,
+    moments: Vec<(usize, f64)>,
     displacements: PostedLoadPattern,
+    rotations: Vec<(usize, f64)>,
     motions: PostedLoadPattern,
     /// Load factor of a dimensionless load of 1.
     pub load_scale: f64,
@@ -59,18 +63,24 @@ type PostedLoadPattern = Vec<(usize, MeasuredVector)>;
 pub(super) struct PostedLoading {
     pub forces: Vec<MeasuredVector>,
     pub displacements: Vec<MeasuredVector>,
+    /// Moments on the nodes, and prescribed rotations.
+    pub moments: Vec<f64>,
+    pub rotations: Vec<f64>,
     pub shifts: Vec<MeasuredVector>,
 }
 
 impl Posted {
     pub fn new(request: &JobRequest, load_scales: &[f64]) -> Self {
         let model = &request.model;
-        let node = |(name, place): (&String, &Vec<f64>)| {
-            let mut held = [false; 3];
+        let node = |((name, place), has_rotation): ((&String, &Vec<f64>), bool)| {
+            let (mut held, mut rotation_held) = ([false; 3], false);
             for component in model.supports.get(name).into_iter().flatten() {
-                held[component.index()] = true;
+                match held.get_mut(component.index()) {
+                    Some(held) => *held = true,
+                    None => rotation_held = true,
+                }
             }
-            PostedNode { name: name.clone(), place: padded(place), held }
+            PostedNode { name: name.clone(), place: padded(place), held, has_rotation, rotation_held }
         };
         let moved = model.stages.iter().flat_map(|stage| stage.obstacle_motion.keys());
         let moving: IndexSet<&str> = moved.map(String::as_str).collect();
@@ -84,11 +94,19 @@ impl Posted {
         let stage = |(stage, load_scale): (&crate::model::request::Stage, f64)| PostedStage {
             name: stage.name.clone(),
             forces: pattern(&stage.forces, &|name| model.nodes.get_index_of(name)),
-            displacements: pattern(&stage.displacements, &|name| model.nodes.get_index_of(name)),
+            moments: numbered(model, stage.moments.iter().map(|(name, moment)| (name, Some(*moment)))),
+            displacements: pattern(&stage.displacements, &|name| model.nodes.get_index_of(name))
+                .into_iter()
+                .map(|(node, values)| (node, in_dimension(&values, model.dimension)))
+                .collect(),
+            rotations: numbered(
+                model,
+                stage.displacements.iter().map(|(name, values)| (name, values.get(model.dimension).copied())),
+            ),
             motions: pattern(&stage.obstacle_motion, &|name| moving.get_index_of(name)),
             load_scale,
         };
-        let nodes: Vec<PostedNode> = model.nodes.iter().map(node).collect();
+        let nodes: Vec<PostedNode> = model.nodes.iter().zip(model.rotating_nodes()).map(node).collect();
         let first = nodes.first().map_or_else(MeasuredVector::zeros, |node| node.place);
         let (least, most) =
             nodes.iter().fold((first, first), |(least, most), node| (least.inf(&node.place), most.sup(&node.place)));
@@ -109,6 +127,20 @@ impl Posted {
 }
 
 impl Posted {
+    /// Whether anything turns: a node, or a released end.
+    pub fn has_rotations(&self) -> bool {
+        self.rotations() > self.nodes.len() || self.nodes.iter().any(|node| node.has_rotation)
+    }
+
+    /// Number of nodes and of released ends.
+    pub fn rotations(&self) -> usize {
+        let releases = |element: &MeasuredElement| match element {
+            MeasuredElement::Beam(beam) => beam.releases(),
+            _ => 0,
+        };
+        self.nodes.len() + self.elements.iter().map(releases).sum::<usize>()
+    }
+
     /// The gap and the frame of the obstacle of a contact at the node of the contact.
     pub fn frame(
         &self,
@@ -120,6 +152,16 @@ impl Posted {
         let obstacle = &self.obstacles[contact.obstacle];
         obstacle.frame(self.dimension, &loading.shift(contact), place, &displacements[contact.node])
     }
+}
+
+/// Numbers of the nodes with their values, as far as there are any.
+fn numbered<'a>(model: &Model, values: impl Iterator<Item = (&'a String, Option<f64>)>) -> Vec<(usize, f64)> {
+    values.filter_map(|(name, value)| Some((model.nodes.get_index_of(name)?, value?))).collect()
+}
+
+/// The vector without what follows the components of the space.
+fn in_dimension(values: &MeasuredVector, dimension: usize) -> MeasuredVector {
+    padded(&values.as_slice()[..dimension.min(3)])
 }
 
 fn pattern(posted: &IndexMap<String, Vec<f64>>, number: &dyn Fn(&str) -> Option<usize>) -> PostedLoadPattern {
@@ -140,6 +182,8 @@ impl PostedLoading {
         Self {
             forces: vec![MeasuredVector::zeros(); nodes],
             displacements: vec![MeasuredVector::zeros(); nodes],
+            moments: vec![0.0; nodes],
+            rotations: vec![0.0; nodes],
             shifts: vec![MeasuredVector::zeros(); posted.moving],
         }
     }
@@ -160,6 +204,16 @@ impl PostedLoading {
             sums.copy_from_slice(held);
             for (place, values) in pattern {
                 sums[*place] += values * load;
+            }
+        }
+        let turning = [
+            (&mut self.moments, &held.moments, &stage.moments),
+            (&mut self.rotations, &held.rotations, &stage.rotations),
+        ];
+        for (sums, held, pattern) in turning {
+            sums.copy_from_slice(held);
+            for (node, value) in pattern {
+                sums[*node] += value * load;
             }
         }
     }

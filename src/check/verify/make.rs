@@ -109,6 +109,7 @@ impl Make {
         self.0.model.stages.push(Stage {
             name: name.to_owned(),
             forces: forces.iter().map(|(node, force)| ((*node).to_owned(), force.to_vec())).collect(),
+            moments: IndexMap::new(),
             displacements: IndexMap::new(),
             obstacle_motion: IndexMap::new(),
             until,

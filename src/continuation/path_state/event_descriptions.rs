@@ -55,7 +55,7 @@ const MOVED: f64 = 1e-6;
 
 /// Description of the nodes that move most along a rate of all degrees of freedom, with their axes.
 pub(crate) fn describe_motion(scene: &Scene, rate: &[f64]) -> String {
-    let rates = scene.no_displacements.scaled(&scene.structure.translations(rate), 1.0);
+    let rates = scene.nodal_motion(rate, 1.0);
     let size = |components: &[f64]| components.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
     let largest = rates.values().map(size).fold(0.0, f64::max);
     let mut moved: Vec<_> = rates.iter().filter(|(_, components)| size(components) > MOVED * largest).collect();
@@ -63,8 +63,9 @@ pub(crate) fn describe_motion(scene: &Scene, rate: &[f64]) -> String {
     let rank = |components: &[f64]| (size(components) / (MOVED * largest)).round();
     moved.sort_by(|(_, one), (_, other)| rank(other).total_cmp(&rank(one)));
     let along = |components: &[f64]| {
-        let axes = ["x", "y", "z"].iter().zip(components);
-        let axes = axes.filter(|(_, value)| value.abs() > 0.1 * size(components)).map(|(axis, _)| *axis);
+        let names = if scene.structure.dimension == 2 { ["x", "y", "rz"] } else { ["x", "y", "z"] };
+        let axes = names.into_iter().zip(components);
+        let axes = axes.filter(|(_, value)| value.abs() > 0.1 * size(components)).map(|(axis, _)| axis);
         axes.collect::<Vec<_>>().join(" and ")
     };
     let named = moved.iter().take(NAMED).map(|(name, components)| format!("`{name}` along {}", along(components)));

@@ -11,26 +11,41 @@ use crate::mechanics::contact::vector::dot;
 use crate::mechanics::problem::equilibrium::write_unbalanced;
 use crate::mechanics::problem::node_contact_forces;
 use crate::mechanics::structure::elements::Resultants;
-use crate::result::increment::{ElementState, SpaceVector};
+use crate::result::increment::{BeamEndForces, ElementState, SpaceVector};
 use crate::result::nodal_values::NodalValues;
 use std::sync::Arc;
 
 /// The forces of the elements that are recorded.
 pub(crate) fn element_rows(scene: &Scene, row: &RowSource<'_>) -> Vec<ElementState> {
-    let force = scene.plan().force_scale;
+    let (force, length) = (scene.plan().force_scale, scene.plan().displacement_scale);
     let dimension = scene.structure.dimension;
     let recorded = scene.recorded_forces.elements.iter();
     recorded
         .map(|(place, name)| {
-            let (mut axial_force, mut vector) = (None, None);
+            let mut state = ElementState {
+                element: *place as u64,
+                name: name.as_ref().map(Arc::clone),
+                axial_force: None,
+                force: None,
+                ends: None,
+                moment: None,
+            };
             match scene.structure.resultants(*place, &row.state.displacement) {
-                Some(Resultants::Axial(axial)) => axial_force = Some(axial * force),
+                Some(Resultants::Axial(axial)) => state.axial_force = Some(axial * force),
                 Some(Resultants::Force(of_spring)) => {
-                    vector = Some(of_spring[..dimension].iter().map(|value| value * force).collect());
+                    state.force = Some(of_spring[..dimension].iter().map(|value| value * force).collect());
                 }
+                Some(Resultants::Ends(ends)) => {
+                    state.ends = Some(ends.map(|end| BeamEndForces {
+                        axial_force: end.axial_force * force,
+                        shear_force: end.shear_force * force,
+                        bending_moment: end.bending_moment * force * length,
+                    }));
+                }
+                Some(Resultants::Moment(moment)) => state.moment = Some(moment * force * length),
                 None => {}
             }
-            ElementState { element: *place as u64, name: name.as_ref().map(Arc::clone), axial_force, force: vector }
+            state
         })
         .collect()
 }
@@ -51,11 +66,16 @@ pub(crate) fn support_reactions(scene: &Scene, row: &RowSource<'_>) -> NodalValu
             unbalanced[freedom] -= dot(column, &force);
         });
     }
-    let components = recorded.supported_nodes.iter().flat_map(|node| structure.translations_of(*node));
     let held = |freedom: usize| structure.unknown_of[freedom].is_none();
-    let force = scene.plan().force_scale;
-    let reaction = |freedom: usize| if held(freedom) { unbalanced[freedom] * force } else { 0.0 };
-    recorded.no_reactions.with_components(components.map(reaction).collect())
+    let (force, length) = (scene.plan().force_scale, scene.plan().displacement_scale);
+    let mut components = Vec::new();
+    for (node, reactions) in recorded.supported_nodes.iter().zip(recorded.no_reactions.values()) {
+        for (place, freedom) in structure.freedoms_of(*node).enumerate().take(reactions.len()) {
+            let unit = if place < structure.dimension { force } else { force * length };
+            components.push(if held(freedom) { unbalanced[freedom] * unit } else { 0.0 });
+        }
+    }
+    recorded.no_reactions.with_components(components)
 }
 
 /// The sum of the applied forces over the nodes.

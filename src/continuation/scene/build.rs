@@ -1,5 +1,6 @@
 //! Conversion of the request's names and units to dimensionless numbers.
 
+use crate::continuation::scene::elements::ElementBuilder;
 use crate::continuation::scene::requested_contacts::Reported;
 use crate::continuation::scene::stage_load::StageLoad;
 use crate::continuation::scene::tolerances::COINCIDENCE_TOLERANCE;
@@ -12,9 +13,6 @@ use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::node_contact_forces::Corner;
 use crate::mechanics::structure::Structure;
-use crate::mechanics::structure::element_list::ElementList;
-use crate::mechanics::structure::elements::bar::Bar;
-use crate::mechanics::structure::elements::spring::Spring;
 use crate::model::input::limits::PENETRATION_TOLERANCE;
 use crate::model::request::{self, Analysis, Model, Side};
 use crate::resources::budget;
@@ -38,43 +36,13 @@ pub(super) fn build_structure(
 ) -> Structure {
     let dimension = model.dimension;
     let of_node = |(name, components): (&String, &Vec<_>)| -> Vec<(usize, usize)> {
-        components.iter().map(|component: &request::Component| (numbers[name.as_str()], component.index())).collect()
+        components
+            .iter()
+            .map(|component: &request::Component| (numbers[name.as_str()], component.place(dimension)))
+            .collect()
     };
     let supports: Vec<(usize, usize)> = model.supports.iter().flat_map(of_node).collect();
-    let mut elements = ElementList::default();
-    for element in &model.elements {
-        match element {
-            request::Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain, name: _ } => {
-                let nodes = [numbers[nodes[0].as_str()], numbers[nodes[1].as_str()]];
-                let mut vector = [0.0; 3];
-                // A difference of the places as given: a place far from the origin causes no loss of digits.
-                (0..dimension).for_each(|k| vector[k] = (model.nodes[nodes[1]][k] - model.nodes[nodes[0]][k]) / length);
-                let apart = vector.iter().map(|value| value * value).sum::<f64>().sqrt();
-                elements.push(Bar {
-                    nodes,
-                    reference: vector,
-                    reference_length: apart,
-                    axial_stiffness: axial_stiffness / force,
-                    rest_length: rest_length.map_or(apart, |rest| rest / length),
-                    prestress: prestress / force,
-                    strain: *strain,
-                });
-            }
-            request::Element::Spring { nodes, stiffness, name: _ } => {
-                let mut matrix = [[0.0; 3]; 3];
-                for (row, values) in stiffness.iter().enumerate() {
-                    for (column, value) in values.iter().enumerate() {
-                        matrix[row][column] = value / force * length;
-                    }
-                }
-                let node = numbers[nodes[0].as_str()];
-                elements.push(match nodes.get(1) {
-                    Some(other) => Spring::between([node, numbers[other.as_str()]], matrix),
-                    None => Spring::to_ground(node, matrix),
-                });
-            }
-        }
-    }
+    let elements = ElementBuilder::new(model, numbers, length, force).build();
     Structure::like(like, dimension, model.nodes.len(), &supports, elements)
 }
 
@@ -281,6 +249,19 @@ pub(super) struct ScaledModel<'a> {
     pub stretched: f64,
 }
 
+impl ScaledModel<'_> {
+    /// The nodes whose supports a stage moves, each with the displacement of its degrees of freedom as a length: a
+    /// rotation counts as the displacement of a point one length scale away.
+    fn prescribed(&self, stage: &request::Stage) -> Vec<(usize, Vec<f64>)> {
+        let dimension = self.structure.dimension;
+        let lengths = |values: &Vec<f64>| {
+            let unit = |place: usize| if place < dimension { 1.0 } else { self.length };
+            values.iter().enumerate().map(|(place, value)| value * unit(place)).collect()
+        };
+        stage.displacements.iter().map(|(name, values)| (self.numbers[name.as_str()], lengths(values))).collect()
+    }
+}
+
 /// Builds the load of a stage; `resistance` is the force on which its load scale is based.
 pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &ScaledModel<'_>) -> StageLoad {
     let &ScaledModel { model, analysis, numbers, structure, first_contacts, length, force, stretched } = scaled;
@@ -288,20 +269,33 @@ pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scal
     let held = budget::take::<f64>(2 * structure.freedoms() + 3 * first_contacts.len());
     budget::spend(structure.freedoms());
     let largest = |vectors: &IndexMap<String, Vec<f64>>| vectors.values().map(|v| norm(v)).fold(0.0_f64, f64::max);
-    let by_force = resistance / largest(&stage.forces);
-    let by_motion = length / largest(&stage.displacements).max(largest(&stage.obstacle_motion));
+    let largest_moment = stage.moments.values().fold(0.0_f64, |most, moment| most.max(moment.abs()));
+    let by_force = resistance / largest(&stage.forces).max(largest_moment / length);
+    let displacements: Vec<(usize, Vec<f64>)> = scaled.prescribed(stage);
+    let driven = displacements.iter().map(|(_, values)| norm(values)).fold(0.0_f64, f64::max);
+    let by_motion = length / driven.max(largest(&stage.obstacle_motion));
     let natural = by_force.min(by_motion);
     let natural = if natural.is_finite() { natural } else { 1.0 };
     let load_scale = analysis.arc_length.load_scale.unwrap_or(natural);
     let enlarged = stretched.max(load_scale / natural).max(1.0);
-    let over_freedoms = |vectors: &IndexMap<String, Vec<f64>>, unit: f64| {
-        let mut values = vec![0.0; structure.freedoms()];
-        for (name, vector) in vectors {
-            let freedoms = structure.translations_of(numbers[name.as_str()]);
-            freedoms.zip(vector).for_each(|(freedom, value)| values[freedom] = value * load_scale / unit);
+    let mut forces = vec![0.0; structure.freedoms()];
+    for (name, vector) in &stage.forces {
+        let freedoms = structure.translations_of(numbers[name.as_str()]);
+        freedoms.zip(vector).for_each(|(freedom, value)| forces[freedom] = value * load_scale / force);
+    }
+    for (name, moment) in &stage.moments {
+        let rotation = structure.numbering.rotations_of(numbers[name.as_str()]).start;
+        forces[rotation] = moment * load_scale / force / length;
+    }
+    let supports_move =
+        model.stages.iter().any(|stage| stage.displacements.values().flatten().any(|value| *value != 0.0));
+    let mut supports = vec![0.0; if supports_move { structure.freedoms() } else { 0 }];
+    if supports_move {
+        for (node, values) in &displacements {
+            let freedoms = structure.freedoms_of(*node);
+            freedoms.zip(values).for_each(|(freedom, value)| supports[freedom] = value * load_scale / length);
         }
-        values
-    };
+    }
     let shift = |contact: &request::Contact| {
         let mut shift: Vector = [0.0; 3];
         if let Some(motion) = stage.obstacle_motion.get(&contact.obstacle) {
@@ -309,10 +303,9 @@ pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scal
         }
         shift
     };
-    let supports_move = model.stages.iter().any(|stage| largest(&stage.displacements) > 0.0);
     let pattern = LoadPattern {
-        forces: over_freedoms(&stage.forces, force),
-        supports: if supports_move { over_freedoms(&stage.displacements, length) } else { Vec::new() },
+        forces,
+        supports,
         shifts: first_contacts.iter().map(|contact| shift(&model.contacts[*contact])).collect(),
     };
     let mut ends = Vec::new();
@@ -321,8 +314,10 @@ pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scal
         ends.extend(until.load_above.map(|bound| load(bound, 1.0)));
         ends.extend(until.load_below.map(|bound| load(bound, -1.0)));
         if let Some(given) = &until.displacement {
-            let freedom = structure.translations_of(numbers[given.node.as_str()]).start + given.component.index();
-            let end = |bound: f64, sign: f64| End::Displacement { freedom, bound: bound / length, sign };
+            let place = given.component.place(structure.dimension);
+            let freedom = structure.freedoms_of(numbers[given.node.as_str()]).start + place;
+            let unit = if place < structure.dimension { length } else { 1.0 };
+            let end = |bound: f64, sign: f64| End::Displacement { freedom, bound: bound / unit, sign };
             ends.extend(given.above.map(|bound| end(bound, 1.0)));
             ends.extend(given.below.map(|bound| end(bound, -1.0)));
         }

@@ -6,13 +6,15 @@
 //! at which the stage is to end (1 where it specifies none), or the stiffness of the springs that resist the load (the
 //! largest Frobenius norm) times the largest prescribed motion if this is larger, and `ℓ` is this force divided by this
 //! stiffness. The resisting stiffness is found by `characteristic_stiffness`, unless the bars' stiffnesses differ by no
-//! more than a factor of two. `σ` is the smaller of `φ / max |f|`, with the `φ` of the stiffness that resists the
+//! more than a factor of two. With beams, `ℓ` is the diagonal of the box around the nodes and `φ` the smallest bending
+//! stiffness over `ℓ²`. `σ` is the smaller of `φ / max |f|`, with the `φ` of the stiffness that resists the
 //! stage's own load, and `ℓ / max |motion|`. All scales follow the units of the input, so that a change of units
 //! changes nothing but round-off.
 
 pub(crate) mod admissibility;
 pub(crate) mod build;
 pub(crate) mod characteristic_stiffness;
+mod elements;
 pub(crate) mod omitted_features;
 pub(crate) mod recorded_contacts;
 pub(crate) mod recorded_forces;
@@ -26,7 +28,7 @@ use crate::mechanics::contact::ContactPair;
 use crate::mechanics::problem::node_contact_forces::Corner;
 use crate::mechanics::structure::Structure;
 use crate::mechanics::structure::element_list::ElementList;
-use crate::model::request::{Analysis, JobRequest};
+use crate::model::request::{Analysis, JobRequest, Model};
 use crate::model::{InputError, InputErrors};
 use crate::resources::budget::{self, Breach, Budget};
 use crate::result::nodal_values::NodalValues;
@@ -70,6 +72,13 @@ pub(crate) struct AdditionalParts {
     pub elements: ElementList,
     /// Contacts, each with the names of its node and its obstacle.
     pub contacts: Vec<(&'static str, &'static str, ContactPair)>,
+}
+
+/// Zero displacements of all nodes, with the rotations of those that have one.
+fn still(model: &Model) -> NodalValues {
+    let components = |rotates: bool| vec![0.0; model.dimension + usize::from(rotates)];
+    let nodes = model.nodes.keys().zip(model.rotating_nodes());
+    nodes.map(|(name, rotates)| (Arc::from(name.as_str()), components(rotates))).collect()
 }
 
 impl Scene {
@@ -170,7 +179,7 @@ impl Scene {
             left_out,
             warnings: warnings::warnings(model),
         };
-        let no_displacements = NodalValues::zero(model.nodes.keys().map(String::as_str), model.dimension);
+        let no_displacements = still(model);
         let analysis = request.analysis.clone();
         let asked_rows = crate::continuation::scene::recorded_contacts::asked_rows(request);
         let jumps = crate::continuation::scene::omitted_features::jumps(&analysis, &structure);
@@ -197,6 +206,18 @@ impl Scene {
 
     fn node_name(&self, node: usize) -> &str {
         self.no_displacements.get_index(node).map_or("", |(name, _)| name)
+    }
+
+    /// What increments report of a vector over all degrees of freedom: translations times `unit`, and the rotation of a
+    /// node that has one.
+    pub(crate) fn nodal_motion(&self, values: &[f64], unit: f64) -> NodalValues {
+        let (structure, mut components) = (&self.structure, Vec::with_capacity(values.len()));
+        for (node, reported) in self.no_displacements.values().enumerate() {
+            for (place, freedom) in structure.freedoms_of(node).enumerate().take(reported.len()) {
+                components.push(if place < structure.dimension { values[freedom] * unit } else { values[freedom] });
+            }
+        }
+        self.no_displacements.with_components(components)
     }
 
     /// The plan: features that the scene needs and those omitted.

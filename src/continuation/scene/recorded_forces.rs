@@ -21,10 +21,15 @@ impl RecordedForces {
     pub fn of(request: &JobRequest) -> Self {
         let model = &request.model;
         let named = |place: usize| (place, model.elements[place].name().map(Arc::from));
+        let rotating = model.rotating_nodes();
+        let reactions = |name: &String| {
+            let rotates = model.nodes.get_index_of(name).is_some_and(|number| rotating[number]);
+            (Arc::from(name.as_str()), vec![0.0; model.dimension + usize::from(rotates)])
+        };
         Self {
             elements: recorded_elements(request).into_iter().map(named).collect(),
             supported_nodes: model.supports.keys().filter_map(|name| model.nodes.get_index_of(name)).collect(),
-            no_reactions: NodalValues::zero(model.supports.keys().map(String::as_str), model.dimension),
+            no_reactions: model.supports.keys().map(reactions).collect(),
         }
     }
 }

@@ -6,6 +6,7 @@ use crate::continuation::scene::build::{
 use crate::continuation::scene::characteristic_stiffness::resisting;
 use crate::continuation::scene::tolerances::{LARGEST_STIFFNESS_RATIO, SIMILAR_STIFFNESS_RATIO};
 use crate::mechanics::structure::Structure;
+use crate::model::check::scope::size;
 use crate::model::request::{self, Analysis, Model};
 use std::collections::HashMap;
 
@@ -63,6 +64,7 @@ impl Sizes {
                     bars.push(*axial_stiffness);
                 }
                 request::Element::Spring { stiffness, .. } => springs.push(norm(&stiffness.concat())),
+                request::Element::Beam { .. } | request::Element::RotationalSpring { .. } => {}
             }
         }
         let (mut largest_load, mut largest_motion) = (0.0_f64, 0.0_f64);
@@ -133,6 +135,15 @@ impl Sizes {
     }
 }
 
+/// The smallest bending stiffness of the beams.
+fn least_bending(model: &Model) -> Option<f64> {
+    let of = |element: &request::Element| match element {
+        request::Element::Beam { bending_stiffness, .. } => Some(*bending_stiffness),
+        _ => None,
+    };
+    model.elements.iter().filter_map(of).reduce(f64::min)
+}
+
 /// The scales of a request that has been checked; `like`: a structure that may be identical except for its numbers.
 pub(super) fn scales(
     model: &Model,
@@ -140,6 +151,13 @@ pub(super) fn scales(
     numbers: &HashMap<&str, usize>,
     like: Option<&Structure>,
 ) -> RequestScales {
+    if let Some(bending) = least_bending(model) {
+        // Of the size of the load at which the whole buckles, whatever the mesh.
+        let (own, force) = (size(model), bending / size(model).powi(2));
+        let length = analysis.arc_length.displacement_scale.unwrap_or(own);
+        let resistances = vec![force; model.stages.len()];
+        return RequestScales { length, force, resistances, stretched: length / own, structure: None };
+    }
     let sizes = Sizes::of(model);
     let first = if sizes.bars.is_empty() { most(&sizes.springs) } else { least(&sizes.bars) };
     let (length, force, own) = sizes.scaled_by(analysis, first);

@@ -119,6 +119,11 @@ impl ElementList {
         }
     }
 
+    /// Adds elements at the end.
+    pub fn extend<E: FiniteElement + 'static>(&mut self, elements: impl IntoIterator<Item = E>) {
+        elements.into_iter().for_each(|element| self.push(element));
+    }
+
     /// Adds the elements of another list at the end.
     pub fn append(&mut self, other: &Self) {
         let runs = self.runs.len();
@@ -159,7 +164,7 @@ impl ElementList {
 impl<E: FiniteElement + 'static> FromIterator<E> for ElementList {
     fn from_iter<I: IntoIterator<Item = E>>(elements: I) -> Self {
         let mut list = Self::default();
-        elements.into_iter().for_each(|element| list.push(element));
+        list.extend(elements);
         list
     }
 }

@@ -74,8 +74,9 @@ impl Structure {
     ) -> Self {
         let mut rotations = vec![0; nodes];
         for element in elements.iter() {
-            for node in element.nodes() {
-                rotations[*node] = element.rotations().max(rotations[*node]);
+            for (place, node) in element.nodes().iter().enumerate().filter(|_| element.rotations() > 0) {
+                let most = element.first_rotation_at(place) + element.rotations();
+                rotations[*node] = most.max(rotations[*node]);
             }
         }
         let numbering = Numbering::new(dimension, rotations);
@@ -123,11 +124,12 @@ impl Structure {
         let mut next = first_at.clone();
         let mut elements_at = vec![0; first_at.last().copied().unwrap_or(0)];
         for (index, element) in elements.iter().enumerate() {
-            for node in element.nodes() {
+            for (place, node) in element.nodes().iter().enumerate() {
                 elements_at[next[*node]] = index;
                 next[*node] += 1;
-                let count = self.dimension + element.rotations();
-                self.element_freedoms.extend(self.numbering.freedoms_of(*node).take(count));
+                self.element_freedoms.extend(self.numbering.translations_of(*node));
+                let rotations = self.numbering.rotations_of(*node).skip(element.first_rotation_at(place));
+                self.element_freedoms.extend(rotations.take(element.rotations()));
             }
             self.first_freedom.push(self.element_freedoms.len());
         }

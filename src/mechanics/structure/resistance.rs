@@ -34,8 +34,15 @@ impl MovedElement<'_> {
         changes.fold(0.0, |most, (change, stiffness)| f64::max(most, change.abs() / (stiffness * size)))
     }
 
-    fn largest_stiffness(&self) -> f64 {
-        self.stiffness.iter().fold(0.0, |most, stiffness| f64::max(most, *stiffness))
+    /// The largest stiffness against translations, and against rotations.
+    fn largest_stiffness(&self, dimension: usize) -> [f64; 2] {
+        let per_node = self.force.len() / self.at.element.nodes().len();
+        let mut largest = [0.0_f64; 2];
+        for (place, stiffness) in self.stiffness.iter().enumerate() {
+            let kind = usize::from(place % per_node >= dimension);
+            largest[kind] = largest[kind].max(*stiffness);
+        }
+        largest
     }
 
     /// Forces and moments at the element's nodes with their changes; in 2D forces lie in the plane, and moments turn
@@ -98,7 +105,9 @@ fn moved<'a>(
     });
     let stiffest = of_row.iter().fold(0.0_f64, |most, stiffness| most.max(*stiffness));
     if !at.element.is_linear() {
-        of_row.fill(stiffest);
+        of_row.iter_mut().enumerate().for_each(|(freedom, stiffness)| {
+            *stiffness = at.element.least_stiffness(freedom).unwrap_or(stiffest);
+        });
     }
     MovedElement { at, force, change, stiffness: of_row }
 }
@@ -141,19 +150,25 @@ fn resistance_of(part: &[&MovedElement<'_>], dimension: usize, size: f64) -> f64
     }
     let decomposition = matrix.svd(true, true);
     let Ok(spin) = decomposition.solve(&moment, PARALLEL * decomposition.singular_values.max()) else { return alone };
-    let (mut left_over, mut stiffest) = (0.0_f64, 0.0_f64);
-    let mut sums: BTreeMap<usize, f64> = BTreeMap::new();
+    let (mut left_over, mut stiffest) = (0.0_f64, [0.0_f64; 2]);
+    // For each degree of freedom whether it is a rotation, and the sum.
+    let mut sums: BTreeMap<usize, (usize, f64)> = BTreeMap::new();
     for element in part {
-        let stiffness = element.largest_stiffness();
-        stiffest = stiffest.max(stiffness);
-        for (force, change) in element.vectors(dimension) {
-            left_over = left_over.max((change - spin.cross(&force)).amax() / (stiffness * size));
+        let stiffness = element.largest_stiffness(dimension);
+        (0..2).for_each(|kind| stiffest[kind] = stiffest[kind].max(stiffness[kind]));
+        for ((force, change), kind) in element.vectors(dimension).zip([0, 1].into_iter().cycle()) {
+            if stiffness[kind] > 0.0 {
+                left_over = left_over.max((change - spin.cross(&force)).amax() / (stiffness[kind] * size));
+            }
         }
-        for (freedom, change) in element.at.freedoms.iter().zip(&element.change) {
-            *sums.entry(*freedom).or_default() += change;
+        let per_node = element.force.len() / element.at.element.nodes().len();
+        for (place, (freedom, change)) in element.at.freedoms.iter().zip(&element.change).enumerate() {
+            sums.entry(*freedom).or_insert((usize::from(place % per_node >= dimension), 0.0)).1 += change;
         }
     }
-    let together = sums.values().fold(left_over, |most, sum| most.max(sum.abs() / (stiffest * size)));
+    let together = sums.values().fold(left_over, |most, (kind, sum)| {
+        if stiffest[*kind] > 0.0 { most.max(sum.abs() / (stiffest[*kind] * size)) } else { most }
+    });
     together.min(alone)
 }
 

@@ -5,7 +5,7 @@ use crate::model::check::scope::Scope;
 use crate::model::check::structure::COMPONENT_NAMES;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::quoted;
-use crate::model::request::{Element, Obstacle, Stage};
+use crate::model::request::{Obstacle, Stage};
 
 /// A motion whose component along the normal is at most this part of its length is parallel to the plane.
 const ALONG: f64 = 8.0 * f64::EPSILON;
@@ -35,8 +35,7 @@ impl Surroundings {
 fn driving(scope: &Scope) -> Vec<bool> {
     let mut driving = vec![false; scope.model.nodes.len()];
     for element in &scope.model.elements {
-        let (Element::Bar { nodes, .. } | Element::Spring { nodes, .. }) = element;
-        let numbers = nodes.iter().filter_map(|name| scope.model.nodes.get_index_of(name));
+        let numbers = element.nodes().iter().filter_map(|name| scope.model.nodes.get_index_of(name));
         if numbers.clone().any(|node| scope.has_free_component(node)) {
             numbers.for_each(|node| driving[node] = true);
         }
@@ -61,10 +60,12 @@ pub(super) fn loads(scope: &Scope, around: &Surroundings, stage: &Stage, at: &Do
     let before = mistakes.count();
     let forces_at = at.member("forces");
     let mut loaded = forces(scope, stage, &forces_at, mistakes);
+    loaded |= moments(scope, stage, &at.member("moments"), mistakes);
     loaded |= displacements(scope, around, stage, &at.member("displacements"), mistakes);
     loaded |= motions(scope, around, stage, &at.member("obstacle_motion"), mistakes);
     if !loaded && mistakes.count() == before {
-        let only_forces = stage.displacements.is_empty() && stage.obstacle_motion.is_empty();
+        let only_forces =
+            stage.moments.is_empty() && stage.displacements.is_empty() && stage.obstacle_motion.is_empty();
         let at = if only_forces && !stage.forces.is_empty() { &forces_at } else { at };
         mistakes.add(at, || {
             "the stage has no load; a force that is not zero on a free component, a displacement of a support that an \
@@ -87,6 +88,33 @@ fn forces(scope: &Scope, stage: &Stage, at: &DocumentPlace, mistakes: &mut Mista
     loaded
 }
 
+/// Notes a node without a rotation where one is named; `at`: the place that names it.
+pub(super) fn rotation(scope: &Scope, node: usize, name: &str, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
+    let has = scope.has_rotation(node);
+    if !has {
+        mistakes.add(at, || {
+            format!(
+                "the node {} has no rotation; one to which a beam is joined without a release, or on which a rotational \
+                 spring acts, is expected",
+                quoted(name)
+            )
+        });
+    }
+    has
+}
+
+fn moments(scope: &Scope, stage: &Stage, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
+    let mut loaded = false;
+    for (name, &moment) in &stage.moments {
+        let at = at.member(name);
+        let node = scope.node(name, &at, mistakes);
+        let sane = numbers::number(moment, &at, mistakes);
+        let Some(node) = node else { continue };
+        loaded |= rotation(scope, node, name, &at, mistakes) && sane && moment != 0.0 && scope.turns_freely(node);
+    }
+    loaded
+}
+
 fn displacements(
     scope: &Scope,
     around: &Surroundings,
@@ -98,13 +126,18 @@ fn displacements(
     for (name, displacement) in &stage.displacements {
         let at = at.member(name);
         let node = scope.node(name, &at, mistakes);
-        if !numbers::vector(displacement, scope.model.dimension, &at, mistakes) {
+        let dimension = scope.model.dimension;
+        // The rotation may follow where the node has one.
+        let turns = displacement.len() == dimension + 1 && node.is_some_and(|node| scope.has_rotation(node));
+        if !numbers::vector(displacement, if turns { dimension + 1 } else { dimension }, &at, mistakes) {
             continue;
         }
         let Some(node) = node else { continue };
-        for (index, &part) in displacement.iter().enumerate().filter(|(_, part)| **part != 0.0) {
-            if scope.is_free(node, index) {
-                mistakes.add(&at.index(index), || {
+        for (place, &part) in displacement.iter().enumerate().filter(|(_, part)| **part != 0.0) {
+            let is_turn = place == dimension;
+            let index = if is_turn { 3 } else { place };
+            if if is_turn { scope.turns_freely(node) } else { scope.is_free(node, index) } {
+                mistakes.add(&at.index(place), || {
                     let component = COMPONENT_NAMES[index];
                     let name = quoted(name);
                     format!(

@@ -17,10 +17,7 @@ pub(super) fn mechanism(scope: &Scope, mistakes: &mut Mistakes) {
 
 fn names_nodes_that_exist(scope: &Scope) -> bool {
     let exists = |name: &String| scope.model.nodes.contains_key(name);
-    let in_elements = scope.model.elements.iter().all(|element| {
-        let (Element::Bar { nodes, .. } | Element::Spring { nodes, .. }) = element;
-        nodes.iter().all(exists)
-    });
+    let in_elements = scope.model.elements.iter().all(|element| element.nodes().iter().all(exists));
     in_elements
         && scope.model.supports.keys().all(exists)
         && scope.model.contacts.iter().all(|contact| exists(&contact.node))
@@ -32,8 +29,7 @@ fn note_loose_parts(scope: &Scope, mistakes: &mut Mistakes) {
     let mut has_element = vec![false; held.len()];
     let number = |name: &String| scope.model.nodes.get_index_of(name);
     for element in &scope.model.elements {
-        let (Element::Bar { nodes, .. } | Element::Spring { nodes, .. }) = element;
-        let numbers: Vec<usize> = nodes.iter().filter_map(number).collect();
+        let numbers: Vec<usize> = element.nodes().iter().filter_map(number).collect();
         for &node in &numbers {
             has_element[node] = true;
             parts.join(numbers[0], node);

@@ -4,6 +4,7 @@
 //! here by the connections of nodes; those that depend on the numbers are detected when the tangent stiffness is known.
 
 mod analysis;
+mod beams;
 mod contacts;
 mod loads;
 mod mechanism;

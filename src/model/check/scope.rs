@@ -11,15 +11,17 @@ use crate::model::request::Obstacle;
 pub(crate) struct Scope<'a> {
     pub model: &'a Model,
     pub at: DocumentPlace<'a>,
-    /// For each node, whether x, y, z are held.
-    pub supported: Vec<[bool; 3]>,
+    /// For each node, whether x, y, z and the rotation are held.
+    pub supported: Vec<[bool; 4]>,
+    /// For each node, whether it has a rotation.
+    pub rotating: Vec<bool>,
     /// Diagonal of the box around the well-formed nodes; 0 for a single node.
     pub size: f64,
 }
 
 impl<'a> Scope<'a> {
     pub fn new(model: &'a Model, at: DocumentPlace<'a>) -> Self {
-        let mut supported = vec![[false; 3]; model.nodes.len()];
+        let mut supported = vec![[false; 4]; model.nodes.len()];
         for (name, components) in &model.supports {
             if let Some(held) = model.nodes.get_index_of(name).and_then(|node| supported.get_mut(node)) {
                 for component in components {
@@ -27,7 +29,7 @@ impl<'a> Scope<'a> {
                 }
             }
         }
-        Self { model, at, supported, size: size(model) }
+        Self { model, at, supported, rotating: model.rotating_nodes(), size: size(model) }
     }
 
     /// The number of a node; notes an unknown name.
@@ -60,8 +62,17 @@ impl<'a> Scope<'a> {
         component < self.model.dimension && self.supported.get(node).is_some_and(|held| !held[component])
     }
 
+    /// Whether the node has a rotation, and it is free.
+    pub fn turns_freely(&self, node: usize) -> bool {
+        self.has_rotation(node) && !self.supported[node][3]
+    }
+
+    pub fn has_rotation(&self, node: usize) -> bool {
+        self.rotating.get(node).copied().unwrap_or(false)
+    }
+
     pub fn has_free_component(&self, node: usize) -> bool {
-        (0..self.model.dimension).any(|component| self.is_free(node, component))
+        (0..self.model.dimension).any(|component| self.is_free(node, component)) || self.turns_freely(node)
     }
 
     /// The largest penetration of an obstacle that rounding can cause, given the largest coordinate or radius.

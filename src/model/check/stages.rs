@@ -2,13 +2,13 @@
 
 use std::collections::HashSet;
 
-use crate::model::check::loads::{Surroundings, loads};
+use crate::model::check::loads::{self, Surroundings, loads};
 use crate::model::check::numbers;
 use crate::model::check::scope::{Scope, proper_name};
 use crate::model::check::structure::{component, component_name};
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::quoted;
-use crate::model::request::{DisplacementBound, Stage, Until};
+use crate::model::request::{Component, DisplacementBound, Stage, Until};
 
 pub(super) fn stages(scope: &Scope, mistakes: &mut Mistakes) {
     let at = scope.at.member("stages");
@@ -79,9 +79,14 @@ fn displacement_bound(
     let node = scope.node(&bound.node, &at.member("node"), mistakes);
     let component_at = at.member("component");
     let known = component(bound.component, scope.model.dimension, &component_at, mistakes);
-    let index = bound.component.index();
-    let prescribed = stage.displacements.get(&bound.node).and_then(|displacement| displacement.get(index));
-    let moves = |node| scope.is_free(node, index) || prescribed.is_some_and(|&displacement| displacement != 0.0);
+    let dimension = scope.model.dimension;
+    let place = bound.component.place(dimension);
+    let prescribed = stage.displacements.get(&bound.node).and_then(|displacement| displacement.get(place));
+    let turns = bound.component == Component::Rz;
+    let known = known
+        && (!turns || node.is_some_and(|node| loads::rotation(scope, node, &bound.node, &component_at, mistakes)));
+    let is_free = |node| if turns { scope.turns_freely(node) } else { scope.is_free(node, place) };
+    let moves = |node| is_free(node) || prescribed.is_some_and(|&displacement| displacement != 0.0);
     if known && node.is_some_and(|node| !moves(node)) {
         mistakes.add(&component_at, || {
             let component = component_name(bound.component);

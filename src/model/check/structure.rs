@@ -1,5 +1,7 @@
 //! Checks nodes, supports and elements.
 
+use crate::model::check::beams;
+use crate::model::check::loads;
 use crate::model::check::numbers::{self, difference, largest, norm};
 use crate::model::check::scope::{Scope, proper_name};
 use crate::model::input::limits::{COINCIDENCE_TOLERANCE, SYMMETRY_TOLERANCE};
@@ -24,13 +26,16 @@ pub(super) fn supports(scope: &Scope, mistakes: &mut Mistakes) {
     let at = scope.at.member("supports");
     for (name, components) in &scope.model.supports {
         let at = at.member(name);
-        scope.node(name, &at, mistakes);
+        let node = scope.node(name, &at, mistakes);
         if components.is_empty() {
             mistakes.add(&at, || "no component is named; name one or more, or leave the support out");
         }
         for (index, &held) in components.iter().enumerate() {
             let at = at.index(index);
-            component(held, scope.model.dimension, &at, mistakes);
+            let known = component(held, scope.model.dimension, &at, mistakes);
+            if let (Component::Rz, true, Some(node)) = (held, known, node) {
+                loads::rotation(scope, node, name, &at, mistakes);
+            }
             if components.iter().take(index).any(|&earlier| earlier == held) {
                 mistakes.add(&at, || format!("the component {} is named twice", component_name(held)));
             }
@@ -40,16 +45,17 @@ pub(super) fn supports(scope: &Scope, mistakes: &mut Mistakes) {
 
 /// Notes a component that the dimension does not have.
 pub(super) fn component(component: Component, dimension: usize, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
-    let known = component.index() < dimension;
+    let known = if component == Component::Rz { dimension == 2 } else { component.index() < dimension };
     if !known {
         let name = component_name(component);
-        mistakes.add(at, || format!("there is no component {name} in {dimension} dimensions; `x` or `y` would do"));
+        let others = if dimension == 2 { "`x` or `y`" } else { "`x`, `y` or `z`" };
+        mistakes.add(at, || format!("there is no component {name} in {dimension} dimensions; {others} would do"));
     }
     known
 }
 
 /// By index of the component.
-pub(super) const COMPONENT_NAMES: [&str; 3] = ["`x`", "`y`", "`z`"];
+pub(super) const COMPONENT_NAMES: [&str; 4] = ["`x`", "`y`", "`z`", "`rz`"];
 
 pub(super) fn component_name(component: Component) -> &'static str {
     COMPONENT_NAMES[component.index()]
@@ -84,8 +90,19 @@ pub(super) fn elements(scope: &Scope, mistakes: &mut Mistakes) {
                     let detail = move || format!("found {found} nodes; a spring has 1 (to the ground) or 2");
                     mistakes.add(&at.member("nodes"), detail);
                 }
-                distinct_nodes(scope, nodes, &at, mistakes);
+                distinct_nodes(scope, nodes, 2, &at, mistakes);
                 symmetric(stiffness, scope.model.dimension, &at.member("stiffness"), mistakes);
+            }
+            Element::Beam { .. } => beams::beam(scope, element, &at, mistakes),
+            Element::RotationalSpring { nodes, stiffness, name: _ } => {
+                beams::plane("a rotational spring", scope, &at, mistakes);
+                if !matches!(nodes.len(), 1 | 2) {
+                    let found = nodes.len();
+                    let detail = move || format!("found {found} nodes; a rotational spring has 1 (to the ground) or 2");
+                    mistakes.add(&at.member("nodes"), detail);
+                }
+                distinct_nodes(scope, nodes, 2, &at, mistakes);
+                numbers::positive(*stiffness, &at.member("stiffness"), mistakes);
             }
         }
     }
@@ -103,7 +120,7 @@ fn element_name(name: &str, at: &DocumentPlace, mistakes: &mut Mistakes) {
 }
 
 fn bar_nodes(scope: &Scope, nodes: &[String], at: &DocumentPlace, mistakes: &mut Mistakes) {
-    let found = distinct_nodes(scope, nodes, at, mistakes);
+    let found = distinct_nodes(scope, nodes, 2, at, mistakes);
     let at = at.member("nodes");
     if nodes.len() != 2 {
         mistakes.add(&at, || format!("found {} nodes; a bar has 2", nodes.len()));
@@ -119,13 +136,19 @@ fn bar_nodes(scope: &Scope, nodes: &[String], at: &DocumentPlace, mistakes: &mut
     }
 }
 
-/// The numbers of the nodes if all are known and none occurs twice.
-fn distinct_nodes(scope: &Scope, names: &[String], at: &DocumentPlace, mistakes: &mut Mistakes) -> Option<Vec<usize>> {
+/// The numbers of the nodes if all are known and none occurs twice. Beyond the number that an element of its kind has at
+/// most, a list is not checked.
+pub(super) fn distinct_nodes(
+    scope: &Scope,
+    names: &[String],
+    most: usize,
+    at: &DocumentPlace,
+    mistakes: &mut Mistakes,
+) -> Option<Vec<usize>> {
     let at = at.member("nodes");
     let before = mistakes.count();
     let mut found = Vec::with_capacity(names.len());
-    // An element has two nodes at most: the rest of a longer list is not checked.
-    for (index, name) in names.iter().enumerate().take(2) {
+    for (index, name) in names.iter().enumerate().take(most) {
         let at = at.index(index);
         found.extend(scope.node(name, &at, mistakes));
         if names.iter().take(index).any(|earlier| earlier == name) {

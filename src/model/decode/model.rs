@@ -22,6 +22,15 @@ const BAR: Fields = Fields {
     later: &[],
 };
 
+const BEAM: Fields = Fields {
+    what: "a beam",
+    known: &["kind", "nodes", "axial_stiffness", "bending_stiffness", "shear_stiffness", "releases", "name"],
+    later: &[],
+};
+
+const ROTATIONAL_SPRING: Fields =
+    Fields { what: "a rotational spring", known: &["kind", "nodes", "stiffness", "name"], later: &[] };
+
 const SPRING: Fields = Fields { what: "a spring", known: &["kind", "nodes", "stiffness", "name"], later: &[] };
 
 const PLANE: Fields = Fields { what: "a plane", known: &["kind", "point", "normal"], later: &[] };
@@ -30,8 +39,11 @@ const BALL: Fields = Fields { what: "a ball", known: &["kind", "center", "radius
 
 const CONTACT: Fields = Fields { what: "a contact", known: &["node", "obstacle", "friction"], later: &[] };
 
-const STAGE: Fields =
-    Fields { what: "a stage", known: &["name", "forces", "displacements", "obstacle_motion", "until"], later: &[] };
+const STAGE: Fields = Fields {
+    what: "a stage",
+    known: &["name", "forces", "moments", "displacements", "obstacle_motion", "until"],
+    later: &[],
+};
 
 const UNTIL: Fields = Fields {
     what: "an end of a stage",
@@ -46,11 +58,18 @@ const DISPLACEMENT_BOUND: Fields =
 enum ElementKind {
     Bar,
     Spring,
+    Beam,
+    RotationalSpring,
 }
 
 const ELEMENT_KIND: Choices<ElementKind> = Choices {
     what: "a kind of element",
-    known: &[("bar", ElementKind::Bar), ("spring", ElementKind::Spring)],
+    known: &[
+        ("bar", ElementKind::Bar),
+        ("spring", ElementKind::Spring),
+        ("beam", ElementKind::Beam),
+        ("rotational_spring", ElementKind::RotationalSpring),
+    ],
     later: &[],
 };
 
@@ -77,7 +96,7 @@ const STRAIN: Choices<Strain> = Choices {
 
 const COMPONENT: Choices<Component> = Choices {
     what: "a component",
-    known: &[("x", Component::X), ("y", Component::Y), ("z", Component::Z)],
+    known: &[("x", Component::X), ("y", Component::Y), ("z", Component::Z), ("rz", Component::Rz)],
     later: &[],
 };
 
@@ -137,6 +156,8 @@ fn element(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
     match input.kind(&ELEMENT_KIND, mistakes)? {
         ElementKind::Bar => bar(input, mistakes),
         ElementKind::Spring => spring(input, mistakes),
+        ElementKind::Beam => beam(input, mistakes),
+        ElementKind::RotationalSpring => rotational_spring(input, mistakes),
     }
 }
 
@@ -165,6 +186,33 @@ fn spring(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
     let stiffness = object.required("stiffness", mistakes, |input, mistakes| input.list(mistakes, numbers));
     let name = object.optional("name", mistakes, text);
     Some(Element::Spring { nodes: nodes?, stiffness: stiffness?, name: name? })
+}
+
+fn beam(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
+    let object = input.object(&BEAM, mistakes)?;
+    let nodes = object.required("nodes", mistakes, strings);
+    let axial_stiffness = object.required("axial_stiffness", mistakes, number);
+    let bending_stiffness = object.required("bending_stiffness", mistakes, number);
+    let shear_stiffness = object.optional("shear_stiffness", mistakes, number);
+    let releases = object
+        .with_default("releases", Default::default(), mistakes, |input, mistakes| input.map(mistakes, components));
+    let name = object.optional("name", mistakes, text);
+    Some(Element::Beam {
+        nodes: nodes?,
+        axial_stiffness: axial_stiffness?,
+        bending_stiffness: bending_stiffness?,
+        shear_stiffness: shear_stiffness?,
+        releases: releases?,
+        name: name?,
+    })
+}
+
+fn rotational_spring(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
+    let object = input.object(&ROTATIONAL_SPRING, mistakes)?;
+    let nodes = object.required("nodes", mistakes, strings);
+    let stiffness = object.required("stiffness", mistakes, number);
+    let name = object.optional("name", mistakes, text);
+    Some(Element::RotationalSpring { nodes: nodes?, stiffness: stiffness?, name: name? })
 }
 
 fn obstacle(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {
@@ -201,12 +249,15 @@ fn stage(input: &Input, mistakes: &mut Mistakes) -> Option<Stage> {
     let object = input.object(&STAGE, mistakes)?;
     let name = object.required("name", mistakes, text);
     let forces = object.with_default("forces", Default::default(), mistakes, vectors);
+    let moments =
+        object.with_default("moments", Default::default(), mistakes, |input, mistakes| input.map(mistakes, number));
     let displacements = object.with_default("displacements", Default::default(), mistakes, vectors);
     let obstacle_motion = object.with_default("obstacle_motion", Default::default(), mistakes, vectors);
     let until = object.optional("until", mistakes, until);
     Some(Stage {
         name: name?,
         forces: forces?,
+        moments: moments?,
         displacements: displacements?,
         obstacle_motion: obstacle_motion?,
         until: until?,

@@ -35,7 +35,7 @@ fn one_of<T: Clone + std::fmt::Debug + 'static>(values: impl IntoIterator<Item =
 }
 
 fn component() -> impl Strategy<Value = Component> {
-    one_of([Component::X, Component::Y, Component::Z])
+    one_of([Component::X, Component::Y, Component::Z, Component::Rz])
 }
 
 fn element() -> impl Strategy<Value = Element> {
@@ -52,7 +52,20 @@ fn element() -> impl Strategy<Value = Element> {
     );
     let spring = (vec(name(), 0..3), vec(numbers(), 0..4), of(name()))
         .prop_map(|(nodes, stiffness, name)| Element::Spring { nodes, stiffness, name });
-    prop_oneof![bar, spring]
+    let releases = map(vec(component(), 0..3));
+    let beam = (vec(name(), 0..4), number(), number(), of(number()), releases, of(name())).prop_map(
+        |(nodes, axial_stiffness, bending_stiffness, shear_stiffness, releases, name)| Element::Beam {
+            nodes,
+            axial_stiffness,
+            bending_stiffness,
+            shear_stiffness,
+            releases,
+            name,
+        },
+    );
+    let rotational_spring = (vec(name(), 0..3), number(), of(name()))
+        .prop_map(|(nodes, stiffness, name)| Element::RotationalSpring { nodes, stiffness, name });
+    prop_oneof![bar, spring, beam, rotational_spring]
 }
 
 fn obstacle() -> impl Strategy<Value = Obstacle> {
@@ -82,10 +95,11 @@ fn until() -> impl Strategy<Value = Until> {
 }
 
 fn stage() -> impl Strategy<Value = Stage> {
-    (name(), map(numbers()), map(numbers()), map(numbers()), of(until())).prop_map(
-        |(name, forces, displacements, obstacle_motion, until)| Stage {
+    (name(), map(numbers()), map(number()), map(numbers()), map(numbers()), of(until())).prop_map(
+        |(name, forces, moments, displacements, obstacle_motion, until)| Stage {
             name,
             forces,
+            moments,
             displacements,
             obstacle_motion,
             until,

@@ -6,13 +6,16 @@ use crate::model::request::{Element, Record};
 use crate::output::vtk::arrays::DataArray;
 use std::collections::HashMap;
 
-/// Types of cells: a point, for a spring to the ground, and a line.
+/// Types of cells: a point, for a spring to the ground, a line, and a line through several points.
 const VERTEX: u8 = 1;
 const LINE: u8 = 3;
+/// Of a beam of three nodes.
+const LINE_OF_SEVERAL: u8 = 4;
 
 /// The nodes and elements of a model as a grid.
 #[derive(Debug, Clone)]
 pub struct Grid {
+    pub(super) dimension: usize,
     pub(super) points: DataArray,
     pub(super) cells: [DataArray; 3],
     /// Place of each element in the model.
@@ -46,11 +49,16 @@ impl Grid {
             *end += nodes.len() as i64;
             Some(*end)
         });
-        let types = nodes.iter().map(|nodes| if nodes.len() == 1 { VERTEX } else { LINE });
+        let types = nodes.iter().map(|nodes| match nodes.len() {
+            1 => VERTEX,
+            2 => LINE,
+            _ => LINE_OF_SEVERAL,
+        });
         let recorded = recorded_elements(request);
-        let has = |is_bar| recorded.iter().any(|place| matches!(model.elements[*place], Element::Bar { .. }) == is_bar);
+        let has = |is: fn(&Element) -> bool| recorded.iter().any(|place| is(&model.elements[*place]));
         let named = request.analysis.record.as_ref().and_then(Record::named_contacts);
         Self {
+            dimension: model.dimension,
             points: DataArray::numbers("points", 3, &points),
             cells: [
                 DataArray::integers("connectivity", nodes.iter().flatten().copied()),
@@ -61,8 +69,8 @@ impl Grid {
             number_of_elements: nodes.len(),
             has_contacts: named.map_or(!model.contacts.is_empty(), |named| !named.is_empty()),
             has_supports: !recorded_supports(request).is_empty(),
-            has_bar_forces: has(true),
-            has_spring_forces: has(false),
+            has_bar_forces: has(|element| matches!(element, Element::Bar { .. })),
+            has_spring_forces: has(|element| matches!(element, Element::Spring { .. })),
             place_of_node,
             branch: branch.into(),
         }

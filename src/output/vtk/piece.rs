@@ -101,7 +101,8 @@ impl Grid {
         let mut all = vec![f64::NAN; 3 * self.place_of_node.len()];
         for (node, components) in values.iter() {
             if let Some(place) = self.place_of_node.get(&**node) {
-                all[3 * place..3 * place + 3].copy_from_slice(&in_space(components));
+                all[3 * place..3 * place + 3]
+                    .copy_from_slice(&in_space(&components[..components.len().min(self.dimension)]));
             }
         }
         DataArray::numbers(name, 3, &all)

@@ -69,11 +69,13 @@ class Model:
         return [self.node(f"{prefix}{first + place}", row) for place, row in enumerate(coordinates)]
 
     def support(self, nodes: Union[Node, Iterable[Node]], components: Union[str, Iterable[str]] = "") -> None:
-        """Holds components such as `"xy"` of a node or of several; all of them unless given."""
-        held = list(components) or list("xyz"[: self.dimension])
-        unknown = [component for component in held if component not in "xyz"[: self.dimension]]
+        """Holds components such as `"xy"` of a node or of several; all displacements unless given. In the plane
+        `["x", "y", "rz"]` holds the rotation of a beam's node, too."""
+        known = ["x", "y", "z"] if self.dimension == 3 else ["x", "y", "rz"]
+        held = ["rz"] if components == "rz" else list(components) or list("xyz"[: self.dimension])
+        unknown = [component for component in held if component not in known]
         if unknown:
-            raise ValueError(f"{unknown[0]!r} is no component; known are {', '.join('xyz'[: self.dimension])}")
+            raise ValueError(f"{unknown[0]!r} is no component; known are {', '.join(known)}")
         several = [nodes] if isinstance(nodes, str) or not isinstance(nodes, Iterable) else nodes
         for node in several:
             own = self._supports.setdefault(self.node_name(node), [])
@@ -123,6 +125,18 @@ class Model:
         nodes = [self.node_name(node) for node in (first, second) if node is not None]
         return self._element({"kind": "spring", "nodes": nodes, "stiffness": matrix, **plain(more)})
 
+    def beam(
+        self, nodes: Sequence[Node], axial_stiffness: float, bending_stiffness: float, **more: Any
+    ) -> int:
+        """Adds a beam in the plane along two or three nodes, with the stiffnesses EA and EI; returns its place among the
+        elements.
+
+        `more`: `shear_stiffness`, `releases` (such as `{"knee": ["rz"]}`), `name`.
+        """
+        named = [self.node_name(node) for node in nodes]
+        own = {"axial_stiffness": axial_stiffness, "bending_stiffness": bending_stiffness, **more}
+        return self._element({"kind": "beam", "nodes": named, **plain(own)})
+
     def _element(self, element: Dict[str, Any]) -> int:
         self._elements.append(element)
         return len(self._elements) - 1
@@ -157,6 +171,7 @@ class Model:
         forces: Optional[Mapping[Node, Vector]] = None,
         displacements: Optional[Mapping[Node, Vector]] = None,
         obstacle_motion: Optional[Mapping[str, Vector]] = None,
+        moments: Optional[Mapping[Node, float]] = None,
         until: Optional[Mapping[str, Any]] = None,
     ) -> str:
         """Adds a stage. Its pattern is multiplied by the load factor, which begins at 0; `until` says where it ends,
@@ -167,6 +182,8 @@ class Model:
                 if not isinstance(pattern, Mapping):
                     raise TypeError(f"{key} are a dict from nodes to vectors; found {pattern!r}")
                 stage[key] = {self.node_name(node): plain(vector) for node, vector in pattern.items()}
+        if moments is not None:
+            stage["moments"] = {self.node_name(node): plain(moment) for node, moment in moments.items()}
         if obstacle_motion is not None:
             stage["obstacle_motion"] = plain(obstacle_motion)
         if until is not None:

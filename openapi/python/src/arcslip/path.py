@@ -74,8 +74,9 @@ class Path:
         row = {name: increment[name] for name in ("index", "stage", "load_factor", "arc_length", "step")}
         point = increment["point"]
         row.update(point=point["kind"], bifurcation=point["bifurcation"], event=point["event"])
+        with_rotation = axes if self.dimension == 3 else [*axes, "rz"]
         for node, vector in increment["displacements"].items():
-            row.update(zip((f"{node}.{axis}" for axis in axes), vector))
+            row.update(zip((f"{node}.{axis}" for axis in with_rotation), vector))
         for contact in increment["contacts"]:
             own = f"{contact['node']}/{contact['obstacle']}"
             for name, value in contact.items():
@@ -92,8 +93,12 @@ class Path:
                 row[f"{own}.axial_force"] = element["axial_force"]
             if "force" in element:
                 row.update(zip((f"{own}.force.{axis}" for axis in axes), element["force"]))
+            for end, forces in zip(("start", "end"), element.get("ends") or []):
+                row.update((f"{own}.{end}.{name}", value) for name, value in forces.items())
+            if "moment" in element:
+                row[f"{own}.moment"] = element["moment"]
         for node, vector in (increment.get("supports") or {}).items():
-            row.update(zip((f"{node}.reaction.{axis}" for axis in axes), vector))
+            row.update(zip((f"{node}.reaction.{axis}" for axis in with_rotation), vector))
         row.update(zip((f"applied_force_{axis}" for axis in axes), increment.get("applied_forces") or []))
         energy = increment["energy"]
         row.update(external_work=energy["external_work"], strain_energy=energy["strain"], dissipated=energy["dissipated"])
@@ -173,7 +178,7 @@ class Path:
         largest: Dict[str, float] = {}
         for increment in self.increments:
             for node, vector in increment["displacements"].items():
-                for axis, value in zip(AXES, vector):
+                for axis, value in zip(AXES[: self.dimension], vector):
                     name = f"{node}.{axis}"
                     largest[name] = max(largest.get(name, 0.0), abs(value))
         if not largest:
@@ -182,7 +187,7 @@ class Path:
 
     def to_meshio(self, place: int = -1) -> Any:
         """The structure at an increment, by its place in the path, as a mesh of meshio: points where the nodes were,
-        their displacements as point data, axial forces of bars as cell data."""
+        their displacements as point data, axial forces of bars, and of beams the mean of their ends, as cell data."""
         import meshio
 
         if not self.increments:
@@ -191,7 +196,8 @@ class Path:
         nodes = list(model["nodes"])
 
         def in_space(vector: Sequence[float]) -> List[float]:
-            return [float(value) for value in vector] + [0.0] * (3 - len(vector))
+            own = vector[: self.dimension]
+            return [float(value) for value in own] + [0.0] * (3 - len(own))
 
         points = [in_space(model["nodes"][node]) for node in nodes]
         nothing = [float("nan")] * 3
@@ -200,17 +206,20 @@ class Path:
         ]
         numbers = {node: number for number, node in enumerate(nodes)}
         states = {state["element"]: state for state in increment.get("elements") or []}
-        lines: List[List[int]] = []
-        ends: List[List[int]] = []
-        axial: List[float] = []
-        of_ends: List[float] = []
+        by_kind: Dict[str, Tuple[List[List[int]], List[float]]] = {"line": ([], []), "line3": ([], []), "vertex": ([], [])}
         for place_of_element, element in enumerate(model["elements"]):
             joined = [numbers[node] for node in element["nodes"]]
-            force = states.get(place_of_element, {}).get("axial_force", float("nan"))
-            (lines if len(joined) == 2 else ends).append(joined)
-            (axial if len(joined) == 2 else of_ends).append(force)
-        cells = [(kind, own) for kind, own in (("line", lines), ("vertex", ends)) if own]
-        data = [own for own in (axial, of_ends) if own]
+            state = states.get(place_of_element, {})
+            ends = state.get("ends")
+            force = sum(end["axial_force"] for end in ends) / 2 if ends else state.get("axial_force", float("nan"))
+            if len(joined) == 3:
+                # The node in the middle comes last.
+                joined = [joined[0], joined[2], joined[1]]
+            own, forces = by_kind[{1: "vertex", 2: "line", 3: "line3"}[len(joined)]]
+            own.append(joined)
+            forces.append(force)
+        cells = [(kind, own) for kind, (own, _) in by_kind.items() if own]
+        data = [forces for own, forces in by_kind.values() if own]
         import numpy
 
         return meshio.Mesh(

@@ -1,6 +1,8 @@
 //! The kinds of elements, one file each, and the interface of all.
 
 pub mod bar;
+pub mod beam;
+pub mod rotational_spring;
 pub mod spring;
 
 use std::fmt::Debug;
@@ -16,6 +18,13 @@ pub trait FiniteElement: Debug + Send + Sync {
 
     /// The number of rotations that the element has at each of its nodes.
     fn rotations(&self) -> usize {
+        0
+    }
+
+    /// Which of a node's rotations is the first that the element has there; `place` is the node's place in
+    /// [`nodes`](Self::nodes). Rotation 0 is shared by all elements that are joined rigidly at the node; a released end
+    /// has another.
+    fn first_rotation_at(&self, _place: usize) -> usize {
         0
     }
 
@@ -35,6 +44,12 @@ pub trait FiniteElement: Debug + Send + Sync {
     /// The stiffness against a motion (of the element's degrees of freedom) per strain, expressed as an axial
     /// stiffness.
     fn axial_stiffness(&self, motion: &[f64]) -> f64;
+
+    /// The stiffness to which a change of the nodal force of one of the element's degrees of freedom is compared, where
+    /// the element resists some motions far less than others; `None`: its stiffness at large.
+    fn least_stiffness(&self, _freedom: usize) -> Option<f64> {
+        None
+    }
 
     /// Whether the nodal forces are linear in the displacements.
     fn is_linear(&self) -> bool {
@@ -71,6 +86,22 @@ pub enum Resultants {
     /// Of a spring on its first node's displacement relative to the second, or to the ground, in global axes; in 2D the
     /// third component is 0.
     Force([f64; 3]),
+    /// At both ends of a plane beam.
+    Ends([BeamEnd; 2]),
+    /// Of a rotational spring on the rotation of its first node relative to the second, or to the ground.
+    Moment(f64),
+}
+
+/// The force in a beam at one of its ends, in the axes of the cross-section there: `t` its normal, along the beam, and
+/// `n`, a quarter turn counter-clockwise from `t`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BeamEnd {
+    /// Along `t`, tension positive.
+    pub axial_force: f64,
+    /// Along `n`, on the side of the cross-section that `t` leaves.
+    pub shear_force: f64,
+    /// Positive where the rotation grows along the beam.
+    pub bending_moment: f64,
 }
 
 /// A summand `k c cᵀ` of the tangent: the stiffness `k` against motions along `c`.

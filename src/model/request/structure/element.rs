@@ -1,9 +1,11 @@
-//! Bars and springs.
+//! Bars, springs and beams.
 
 use crate::mechanics::structure::elements::bar::Strain;
+use crate::model::request::structure::component::Component;
+use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
-/// An elastic element: a bar or a spring.
+/// An elastic element: a bar, a spring, a beam.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
@@ -38,6 +40,40 @@ pub enum Element {
         /// Symmetric, `dimension` rows of `dimension` numbers (force per length).
         #[cfg_attr(feature = "server", schema(min_items = 2, max_items = 3))]
         stiffness: Vec<Vec<f64>>,
+        /// By which results and `analysis.record` refer to the element; one element has it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        name: Option<String>,
+    },
+    /// A geometrically exact beam in the plane, which stretches, bends and shears; free of stress as drawn.
+    Beam {
+        /// Two node names, or three in order along the beam: the beam then follows the circle through them.
+        #[cfg_attr(feature = "server", schema(min_items = 2, max_items = 3))]
+        nodes: Vec<String>,
+        /// EA (force), positive.
+        #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0))]
+        axial_stiffness: f64,
+        /// EI (force times length squared), positive.
+        #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0))]
+        bending_stiffness: f64,
+        /// GA of the area in shear (force), positive; absent: the beam does not shear.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0))]
+        shear_stiffness: Option<f64>,
+        /// Name of an end node to what is released there: `rz` makes a hinge between this beam and the node.
+        #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+        releases: IndexMap<String, Vec<Component>>,
+        /// By which results and `analysis.record` refer to the element; one element has it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        name: Option<String>,
+    },
+    /// A constant stiffness against the rotation of one node, or between the rotations of two nodes, in the plane.
+    RotationalSpring {
+        /// One or two node names.
+        #[cfg_attr(feature = "server", schema(min_items = 1, max_items = 2))]
+        nodes: Vec<String>,
+        /// Moment per angle (force times length), positive.
+        #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0))]
+        stiffness: f64,
         /// By which results and `analysis.record` refer to the element; one element has it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         name: Option<String>,
@@ -80,6 +116,65 @@ impl Element {
         Self::Spring { nodes: vec![from.into(), to.into()], stiffness: rows(stiffness), name: None }
     }
 
+    /// A beam in the plane through two or three nodes, of axial stiffness EA (force) and bending stiffness EI (force times
+    /// length squared), which does not shear.
+    ///
+    /// ```
+    /// use arcslip::Element;
+    ///
+    /// let straight = Element::beam(["clamp", "tip"], 1.0e6, 2.0).with_shear_stiffness(4.0e5);
+    /// let arc = Element::beam(["left", "crown", "right"], 1.0e6, 2.0).with_hinge("right");
+    /// assert_eq!((straight.nodes().len(), arc.nodes().len()), (2, 3));
+    /// ```
+    pub fn beam<const NODES: usize>(
+        nodes: [impl Into<String>; NODES],
+        axial_stiffness: f64,
+        bending_stiffness: f64,
+    ) -> Self {
+        Self::Beam {
+            nodes: nodes.map(Into::into).into(),
+            axial_stiffness,
+            bending_stiffness,
+            shear_stiffness: None,
+            releases: IndexMap::new(),
+            name: None,
+        }
+    }
+
+    /// A spring between the rotation of a node and the ground; `stiffness` is moment per angle.
+    pub fn rotational_spring(node: impl Into<String>, stiffness: f64) -> Self {
+        Self::RotationalSpring { nodes: vec![node.into()], stiffness, name: None }
+    }
+
+    /// The beam with shear, of stiffness GA (force); another element as it is.
+    #[must_use]
+    pub fn with_shear_stiffness(mut self, stiffness: f64) -> Self {
+        if let Self::Beam { shear_stiffness, .. } = &mut self {
+            *shear_stiffness = Some(stiffness);
+        }
+        self
+    }
+
+    /// The beam with a hinge between it and an end node; another element as it is.
+    #[must_use]
+    pub fn with_hinge(mut self, node: impl Into<String>) -> Self {
+        if let Self::Beam { releases, .. } = &mut self {
+            releases.insert(node.into(), vec![Component::Rz]);
+        }
+        self
+    }
+
+    /// Whether the element is joined to a node by the node's rotation.
+    pub fn turns_with(&self, node: &str) -> bool {
+        match self {
+            Self::Bar { .. } | Self::Spring { .. } => false,
+            Self::Beam { releases, .. } => {
+                !releases.get(node).is_some_and(|released| released.contains(&Component::Rz))
+            }
+            Self::RotationalSpring { .. } => true,
+        }
+    }
+
     /// The bar with another unstressed length than the distance of its nodes; a spring as it is.
     #[must_use]
     pub fn with_rest_length(mut self, length: f64) -> Self {
@@ -110,21 +205,30 @@ impl Element {
     /// The element with a name, by which results and [`Record`](crate::model::request::Record) refer to it.
     #[must_use]
     pub fn with_name(mut self, given: impl Into<String>) -> Self {
-        let (Self::Bar { name, .. } | Self::Spring { name, .. }) = &mut self;
+        let (Self::Bar { name, .. }
+        | Self::Spring { name, .. }
+        | Self::Beam { name, .. }
+        | Self::RotationalSpring { name, .. }) = &mut self;
         *name = Some(given.into());
         self
     }
 
     /// The name by which results refer to the element, where it has one.
     pub fn name(&self) -> Option<&str> {
-        let (Self::Bar { name, .. } | Self::Spring { name, .. }) = self;
+        let (Self::Bar { name, .. }
+        | Self::Spring { name, .. }
+        | Self::Beam { name, .. }
+        | Self::RotationalSpring { name, .. }) = self;
         name.as_deref()
     }
 
     /// Names of the nodes that the element joins; one where the other end is the ground.
     pub fn nodes(&self) -> &[String] {
         match self {
-            Self::Bar { nodes, .. } | Self::Spring { nodes, .. } => nodes,
+            Self::Bar { nodes, .. }
+            | Self::Spring { nodes, .. }
+            | Self::Beam { nodes, .. }
+            | Self::RotationalSpring { nodes, .. } => nodes,
         }
     }
 }

@@ -26,7 +26,7 @@ pub struct Model {
     /// Node name to the components held.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub supports: IndexMap<String, Vec<Component>>,
-    /// Bars and springs.
+    /// Bars, springs and beams.
     pub elements: Vec<Element>,
     /// Obstacle name to obstacle.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
@@ -53,6 +53,19 @@ pub struct Units {
 }
 
 impl Model {
+    /// For each node, whether it has a rotation: where a beam is joined to it rigidly, or a rotational spring acts on it.
+    pub fn rotating_nodes(&self) -> Vec<bool> {
+        let mut rotating = vec![false; self.nodes.len()];
+        for element in &self.elements {
+            for node in element.nodes().iter().filter(|node| element.turns_with(node)) {
+                if let Some(number) = self.nodes.get_index_of(node) {
+                    rotating[number] = true;
+                }
+            }
+        }
+        rotating
+    }
+
     /// A model without nodes, in the plane (2) or in space (3).
     ///
     /// ```

@@ -15,8 +15,12 @@ pub struct Stage {
     /// Node name to force; multiplied by the load factor.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub forces: IndexMap<String, Vec<f64>>,
-    /// Node name to prescribed displacement of its supported components (length; zero on free ones); multiplied by the
-    /// load factor.
+    /// Node name to moment (force times length, counter-clockwise), in the plane at nodes with a rotation; multiplied by
+    /// the load factor.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub moments: IndexMap<String, f64>,
+    /// Node name to prescribed displacement of its supported components (length; zero on free ones), with the
+    /// rotation (radians) last where the node has one and it is to be prescribed; multiplied by the load factor.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub displacements: IndexMap<String, Vec<f64>>,
     /// Obstacle name to translation (length); multiplied by the load factor.
@@ -43,6 +47,7 @@ impl Stage {
         Self {
             name: name.into(),
             forces: IndexMap::new(),
+            moments: IndexMap::new(),
             displacements: IndexMap::new(),
             obstacle_motion: IndexMap::new(),
             until: None,
@@ -53,6 +58,13 @@ impl Stage {
     #[must_use]
     pub fn force(mut self, node: impl Into<String>, force: impl Into<Vec<f64>>) -> Self {
         self.forces.insert(node.into(), force.into());
+        self
+    }
+
+    /// With a moment on a node (counter-clockwise), in place of one given before.
+    #[must_use]
+    pub fn moment(mut self, node: impl Into<String>, moment: f64) -> Self {
+        self.moments.insert(node.into(), moment);
         self
     }
 
@@ -151,11 +163,11 @@ pub struct DisplacementBound {
     pub node: String,
     /// Direction of the displacement.
     pub component: Component,
-    /// Length, above 0.
+    /// Length (an angle of a rotation), above 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0))]
     pub above: Option<f64>,
-    /// Length, below 0.
+    /// Length (an angle of a rotation), below 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "server", schema(exclusive_maximum = 0.0))]
     pub below: Option<f64>,

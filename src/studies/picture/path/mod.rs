@@ -47,7 +47,7 @@ impl Against {
     }
 
     fn of(&self, increment: &Increment) -> Option<f64> {
-        increment.displacements.get(self.node.as_str())?.get(self.component.index()).copied()
+        increment.displacements.get(self.node.as_str())?.get(self.component.place(2)).copied()
     }
 }
 
@@ -105,5 +105,6 @@ fn name(component: Component) -> &'static str {
         Component::X => "x",
         Component::Y => "y",
         Component::Z => "z",
+        Component::Rz => "rz",
     }
 }

@@ -29,6 +29,15 @@ class Reading {
     return !wrong;
   }
 
+  hasComponent(name) {
+    return ["x", "y", ...(this.dimension === 2 ? ["rz"] : ["z"])].includes(name);
+  }
+
+  /** In the plane a rotation may come last. */
+  motionOr(value) {
+    return this.dimension === 2 && Array.isArray(value) && value.length === 3 ? this.vectorOr(value.slice(0, 2)) : this.vectorOr(value);
+  }
+
   vectorOr(value) {
     return this.isVector(value) ? null : `it has to be ${this.dimension} numbers`;
   }
@@ -68,7 +77,7 @@ function parts(reading, given, nodes) {
   const contacts = listOf(given.contacts).filter((item, number) => reading.isRight(`Contact ${number}`,
     missing(item?.node) ?? (Object.hasOwn(obstacles, item.obstacle) ? null : `there is no obstacle “${item.obstacle}”`)));
   const supports = reading.keep(given.supports, "The support of", (held, name) => missing(name)
-    ?? (listOf(held).length && held.every((one) => "xyz".slice(0, reading.dimension).includes(one)) ? null
+    ?? (listOf(held).length && held.every((one) => reading.hasComponent(one)) ? null
       : "it has to list components, such as \"x\""));
   return { obstacles, elements, contacts, supports, stages: listOf(given.stages).map((stage, number) =>
     stageOf(reading, stage, number, { missing, obstacles })) };
@@ -83,13 +92,16 @@ function obstacleProblem(reading, obstacle) {
   return isDirection ? reading.vectorOr(obstacle.point) : "its normal has to be a direction";
 }
 
+/** How many nodes an element of a kind may have. */
+const COUNTS = { bar: [2], spring: [1, 2], beam: [2, 3], rotational_spring: [1, 2] };
+
 function elementProblem(reading, item, missing) {
   const names = listOf(item?.nodes);
-  const most = item?.kind === "bar" ? [2] : [1, 2];
-  if (item?.kind !== "bar" && item?.kind !== "spring") return "its kind has to be bar or spring";
+  const most = COUNTS[item?.kind];
+  if (most === undefined) return "its kind has to be bar, spring, beam or rotational_spring";
   if (!most.includes(names.length)) return `it has to have ${most.join(" or ")} nodes`;
   const found = names.map(missing).find(Boolean);
-  if (found || item.kind === "bar") return found ?? null;
+  if (found || item.kind !== "spring") return found ?? null;
   return listOf(item.stiffness).length === reading.dimension && item.stiffness.every((row) => reading.isVector(row)) ? null
     : `its stiffness has to be ${reading.dimension} rows of ${reading.dimension} numbers`;
 }
@@ -100,7 +112,8 @@ function stageOf(reading, stage, number, { missing, obstacles }) {
   return {
     name: `${number}`,
     forces: reading.keep(stage?.forces, of("The force"), onNode),
-    displacements: reading.keep(stage?.displacements, of("The displacement"), onNode),
+    displacements: reading.keep(stage?.displacements, of("The displacement"), (value, name) =>
+      missing(name) ?? reading.motionOr(value)),
     obstacle_motion: reading.keep(stage?.obstacle_motion, of("The motion"), (value, name) =>
       (Object.hasOwn(obstacles, name) ? reading.vectorOr(value) : `there is no obstacle “${name}”`)),
   };

@@ -5,7 +5,8 @@ import { places, tension, vector } from "./geometry.js";
 const { plus } = vector;
 
 /**
- * For each element of the model `{axial, force}`: the axial force of a bar or the force of a spring, null where it is not known.
+ * For each element of the model `{axial, force, ends}`: the axial force of a bar or beam or the force of a spring, null where it is
+ * not known, and the forces at a beam's ends where they are recorded.
  * `isComputed`: some of them are not recorded, and have been computed here.
  */
 export function elementForces(model, increment) {
@@ -15,12 +16,20 @@ export function elementForces(model, increment) {
   let isComputed = false;
   const of = (model.elements ?? []).map((item, number) => {
     const state = recorded.get(number);
-    if (state) return { axial: state.axial_force ?? null, force: state.force ?? null };
+    if (state) return recordedForces(state);
+    // Those of beams need more than the positions of their nodes.
+    if (item.kind !== "bar" && item.kind !== "spring") return { axial: null, force: null };
     if (item.nodes.some((name) => !now.has(name))) return { axial: null, force: null };
     isComputed = true;
     return computed(model, increment, item, now);
   });
   return { of, isComputed };
+}
+
+/** Of a beam the mean of its ends. */
+function recordedForces(state) {
+  const axial = state.ends ? (state.ends[0].axial_force + state.ends[1].axial_force) / 2 : state.axial_force;
+  return { axial: axial ?? null, force: state.force ?? null, ends: state.ends };
 }
 
 function computed(model, increment, item, now) {

@@ -23,12 +23,20 @@ export function quantityGroups(request) {
     { title: "Path", parts: plain(["load_factor", "arc_length", "step", "index"]) },
     { title: "Energies", parts: plain(Object.keys(PLAIN).filter((name) => name.startsWith("/energy/"))) },
     { title: "Displacements", of: "displacements", parts: axes("", ""), ...namedBy(recorded.displacements) },
+    { title: "Rotations", of: "displacements", parts: [["2", "rotation"]], ...namedBy(rotating(recorded.displacements, model)) },
     { title: "Reactions of supports", of: "supports", parts: axes("", "reaction "), ...namedBy(recorded.supports) },
     ...elementGroups(recorded.elements ?? [], model, axes),
     ...contactGroups(recorded.contacts ?? [], model, axes),
     { title: "Applied forces, sum", parts: plain(components.map((_, place) => `/applied_forces/${place}`)) },
     { title: "Accuracy and work", parts: plain(ACCURACY) },
   ].filter(({ keys }) => keys === undefined || keys.length > 0);
+}
+
+/** Those of the nodes that have a rotation: in the plane the nodes of beams and rotational springs. */
+function rotating(names, model) {
+  const turned = (model.elements ?? []).filter(({ kind }) => kind === "beam" || kind === "rotational_spring");
+  const found = new Set(model.dimension === 2 ? turned.flatMap(({ nodes }) => nodes) : []);
+  return names.filter((name) => found.has(name));
 }
 
 const namedBy = (names) => ({ keys: names, names });
@@ -45,6 +53,12 @@ function elementGroups(places, model, axes) {
   return [
     group("Forces of bars", "bar", [["axial_force", "axial force"]]),
     group("Forces of springs", "spring", axes("force/", "force ")),
+    group("Forces of beams", "beam", [["first", 0], ["last", 1]].flatMap(([end, place]) => [
+      [`ends/${place}/axial_force`, `axial force at the ${end} node`],
+      [`ends/${place}/shear_force`, `shear force at the ${end} node`],
+      [`ends/${place}/bending_moment`, `bending moment at the ${end} node`],
+    ])),
+    group("Moments of rotational springs", "rotational_spring", [["moment", "moment"]]),
   ];
 }
 

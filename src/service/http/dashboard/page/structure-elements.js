@@ -1,4 +1,4 @@
-// Elements in the picture of a structure: bars coloured by their axial force, springs, and where they were undeformed.
+// Elements in the picture of a structure: bars and beams coloured by their axial force, springs, and where they were undeformed.
 
 import { fromSheet } from "./plot-style.js";
 import { components, measured } from "./units.js";
@@ -16,9 +16,11 @@ export class ElementDrawing {
 
   draw(item, number) {
     const { model, traces, now, forces, units, detail } = this;
+    // It joins two nodes at one place, or a node to the ground.
+    if (item.kind === "rotational_spring") return;
     const ends = item.nodes.map((name) => now.get(name));
     const before = item.nodes.map((name) => model.nodes[name]);
-    const { axial, force } = forces.of[number];
+    const { axial, force, ends: atEnds } = forces.of[number];
     const named = [title(item, number), item.nodes.join(" – ")];
     if (ends.includes(undefined)) {
       // Its current position is not recorded.
@@ -34,6 +36,7 @@ export class ElementDrawing {
     } else {
       if (!detail.isLarge) traces.lines("undeformed", [before], this.faint);
       if (item.kind === "bar") this.bar(ends, axial, named);
+      else if (item.kind === "beam") this.beam(ends, axial, named, atEnds);
       else traces.element("spring", ends, this.spring, [...named, `force ${components(force ?? [], units.force)}`]);
     }
   }
@@ -42,5 +45,13 @@ export class ElementDrawing {
     const color = axial === null ? this.faint.color : this.colours.of(axial);
     const force = axial === null ? "force not recorded" : `axial force ${measured(axial, this.units.force)}`;
     this.traces.element(`bar ${color}`, ends, { color, width: this.detail.lineWidth }, [...named, force]);
+  }
+
+  /** Straight between its nodes, as it is computed between them it is not drawn. */
+  beam(places, axial, named, ends) {
+    const moments = ends ? [`bending moments ${components(ends.map((end) => end.bending_moment), "")} at its ends`] : [];
+    for (let place = 1; place < places.length; place += 1) {
+      this.bar(places.slice(place - 1, place + 1), axial, [...named, ...moments]);
+    }
   }
 }
