@@ -257,7 +257,10 @@ fn every_mistake_is_listed_with_its_place() {
         ]
     );
     assert_eq!(errors.0[2].detail, "found the string `2`; a whole number is expected");
-    assert_eq!(errors.0[4].detail, "`bra` is not a kind of element; did you mean `bar`? Known: `bar`, `spring`");
+    assert_eq!(
+        errors.0[4].detail,
+        "`bra` is not a kind of element; did you mean `bar`? Known: `bar`, `spring`, `beam`, `rotational_spring`"
+    );
 }
 
 #[test]
