@@ -15,8 +15,20 @@ export const PLAIN = {
 const MEMBERS = {
   gap: ["gap", "length"], normal_reaction: ["normal reaction", "force"], tangential_reaction: ["tangential reaction", "force"],
   reaction: ["reaction", "force"], slip: ["slip of the increment", "length"], slip_total: ["slip in total", "length"],
-  axial_force: ["axial force", "force"], force: ["force", "force"],
+  axial_force: ["axial force", "force"], force: ["force", "force"], moment: ["moment", ["force", "length"]],
 };
+
+/** The same of a beam's ends. */
+const AT_ENDS = {
+  axial_force: MEMBERS.axial_force, shear_force: ["shear force", "force"], bending_moment: ["bending moment", ["force", "length"]],
+};
+const ENDS = ["first", "last"];
+
+/** The nodes that have a rotation, last among their displacements: in the plane those of beams and rotational springs. */
+export function rotatingNodes(model) {
+  const turned = (model.elements ?? []).filter(({ kind }) => kind === "beam" || kind === "rotational_spring");
+  return new Set(model.dimension === 2 ? turned.flatMap(({ nodes }) => nodes) : []);
+}
 
 export const escaped = (name) => name.replaceAll("~", "~0").replaceAll("/", "~1").replaceAll(",", "~2");
 export const unescaped = (step) => step.replaceAll("~2", ",").replaceAll("~1", "/").replaceAll("~0", "~");
@@ -72,8 +84,12 @@ export function isRecorded(name, request) {
   if (of === "applied_forces") return isComponent(key) && steps.length === 0;
   if (of === "diagnostics" || of === "measure") return /^[a-z_]+$/.test(key ?? "") && steps.length === 0;
   const parts = recordedParts(request)[of] ?? [];
-  if (of === "displacements" || of === "supports") return parts.includes(key) && steps.length === 1 && isComponent(steps[0]);
+  if (of === "displacements" || of === "supports") {
+    const many = model.dimension + (rotatingNodes(model).has(key) ? 1 : 0);
+    return parts.includes(key) && steps.length === 1 && isComponent(steps[0], many);
+  }
   if (!(of === "elements" || of === "contacts") || !(Number(key) < parts.length)) return false;
+  if (steps[0] === "ends") return steps.length === 3 && steps[1] in ENDS && steps[2] in AT_ENDS;
   return steps[0] in MEMBERS && (steps.length === 1 || (steps.length === 2 && isComponent(steps[1])));
 }
 
@@ -91,7 +107,7 @@ export function contactWords(model, place) {
 /** A quantity in words; with a request, its unit in brackets where the model has labels of units. */
 export function quantityWords(name, request = null) {
   const units = request?.model?.units;
-  const labels = powersOf(name).map((power) => units?.[power]);
+  const labels = powersOf(name, request).map((power) => units?.[power]);
   return wordsOf(name, request) + (labels.length && labels.every(Boolean) ? ` [${labels.join(" ")}]` : "");
 }
 
@@ -99,6 +115,9 @@ function wordsOf(name, request) {
   if (name in PLAIN) return PLAIN[name];
   const { of, key, steps } = partsOf(name);
   const component = COMPONENTS[steps.at(-1)] ?? "";
+  const isRotation = request?.model.dimension === 2 && steps.at(-1) === "2";
+  if (of === "displacements" && isRotation) return `rotation of ${key}`;
+  if (of === "supports" && isRotation) return `moment of the support of ${key}`;
   if (of === "displacements") return `displacement ${component} of ${key}`;
   if (of === "supports") return `reaction ${component} of the support of ${key}`;
   if (of === "applied_forces") return `applied force ${COMPONENTS[key]}, sum`;
@@ -107,6 +126,7 @@ function wordsOf(name, request) {
   const place = request ? recordedParts(request)[of]?.[Number(key)] ?? Number(key) : Number(key);
   const model = request?.model ?? {};
   const whose = of === "elements" ? elementWords(model, place) : contactWords(model, place);
+  if (steps[0] === "ends") return `${AT_ENDS[steps[2]]?.[0] ?? steps[2]} at the ${ENDS[steps[1]]} node of ${whose}`;
   return `${MEMBERS[steps[0]]?.[0] ?? steps[0]}${along(steps)} of ${whose}`;
 }
 
@@ -118,12 +138,15 @@ function along([member, component]) {
 }
 
 /** The powers of units that a quantity has. */
-function powersOf(name) {
+function powersOf(name, request) {
   const { of, steps } = partsOf(name);
+  const isRotation = request?.model.dimension === 2 && steps.at(-1) === "2";
+  if (of === "displacements" && isRotation) return [];
+  if (of === "supports" && isRotation) return ["force", "length"];
   if (of === "energy") return ["force", "length"];
   if (of === "displacements") return ["length"];
   if (of === "supports" || of === "applied_forces") return ["force"];
-  return of === "elements" || of === "contacts" ? [MEMBERS[steps[0]]?.[1]].filter(Boolean) : [];
+  return of === "elements" || of === "contacts" ? [(AT_ENDS[steps[2]] ?? MEMBERS[steps[0]])?.[1]].flat().filter(Boolean) : [];
 }
 
 /** What two quantities have to share to be drawn along one axis. */

@@ -1,6 +1,6 @@
 // All quantities that a job records, in groups, to choose from.
 
-import { contactWords, displacement, elementWords, escaped, PLAIN, quantityWords, recordedParts } from "./quantities.js";
+import { contactWords, displacement, elementWords, escaped, PLAIN, quantityWords, recordedParts, rotatingNodes } from "./quantities.js";
 
 const LETTERS = "xyz";
 const ACCURACY = [
@@ -16,6 +16,7 @@ const ACCURACY = [
 export function quantityGroups(request) {
   const { model } = request;
   const recorded = recordedParts(request);
+  const rotating = rotatingNodes(model);
   const components = [...LETTERS.slice(0, model.dimension)];
   const axes = (before, words) => components.map((letter, place) => [`${before}${place}`, `${words}${letter}`]);
   const plain = (names) => names.map((name) => [name, quantityWords(name)]);
@@ -23,20 +24,14 @@ export function quantityGroups(request) {
     { title: "Path", parts: plain(["load_factor", "arc_length", "step", "index"]) },
     { title: "Energies", parts: plain(Object.keys(PLAIN).filter((name) => name.startsWith("/energy/"))) },
     { title: "Displacements", of: "displacements", parts: axes("", ""), ...namedBy(recorded.displacements) },
-    { title: "Rotations", of: "displacements", parts: [["2", "rotation"]], ...namedBy(rotating(recorded.displacements, model)) },
+    { title: "Rotations", of: "displacements", parts: [["2", "rotation"]], ...namedBy(recorded.displacements.filter((name) => rotating.has(name))) },
+    { title: "Moments of supports", of: "supports", parts: [["2", "moment"]], ...namedBy(recorded.supports.filter((name) => rotating.has(name))) },
     { title: "Reactions of supports", of: "supports", parts: axes("", "reaction "), ...namedBy(recorded.supports) },
     ...elementGroups(recorded.elements ?? [], model, axes),
     ...contactGroups(recorded.contacts ?? [], model, axes),
     { title: "Applied forces, sum", parts: plain(components.map((_, place) => `/applied_forces/${place}`)) },
     { title: "Accuracy and work", parts: plain(ACCURACY) },
   ].filter(({ keys }) => keys === undefined || keys.length > 0);
-}
-
-/** Those of the nodes that have a rotation: in the plane the nodes of beams and rotational springs. */
-function rotating(names, model) {
-  const turned = (model.elements ?? []).filter(({ kind }) => kind === "beam" || kind === "rotational_spring");
-  const found = new Set(model.dimension === 2 ? turned.flatMap(({ nodes }) => nodes) : []);
-  return names.filter((name) => found.has(name));
 }
 
 const namedBy = (names) => ({ keys: names, names });
