@@ -26,6 +26,7 @@ pub struct Grid {
     pub(super) has_supports: bool,
     pub(super) has_bar_forces: bool,
     pub(super) has_spring_forces: bool,
+    pub(super) has_beam_forces: bool,
     /// What the path is called, written to every file.
     pub(super) branch: String,
 }
@@ -71,6 +72,7 @@ impl Grid {
             has_supports: !recorded_supports(request).is_empty(),
             has_bar_forces: has(|element| matches!(element, Element::Bar { .. })),
             has_spring_forces: has(|element| matches!(element, Element::Spring { .. })),
+            has_beam_forces: has(|element| matches!(element, Element::Beam { .. })),
             place_of_node,
             branch: branch.into(),
         }
