@@ -32,6 +32,31 @@ async fn drawn(browser: &Browser, trace: usize, axis: &str) -> Vec<Option<f64>> 
 }
 
 #[tokio::test]
+async fn rotations_and_moments_of_a_frame_are_drawn() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let frame = json!({"model": {
+        "units": {"length": "m", "force": "kN"}, "dimension": 2,
+        "nodes": {"wall": [0, 0], "knee": [1, 0], "tip": [2, 0]}, "supports": {"wall": ["x", "y", "rz"]},
+        "elements": [{"kind": "beam", "nodes": ["wall", "knee", "tip"], "axial_stiffness": 100, "bending_stiffness": 3}],
+        "stages": [{"name": "roll", "moments": {"tip": 3}, "until": {"load_above": 1}}],
+    }});
+    let id = served.ended(&frame).await;
+    browser.visit(&format!("{}/?jobs={id}", served.url())).await;
+    browser.until(&format!("{PATH}.data?.length > 1")).await;
+    for (chosen, words) in [
+        ("/displacements/tip/2", "rotation of tip"),
+        ("/supports/wall/2", "moment of the support of wall [kN m]"),
+        ("/elements/0/ends/1/bending_moment", "bending moment at the last node of beam 0 (wall–knee–tip) [kN m]"),
+    ] {
+        browser.put("#ordinate", chosen).await;
+        browser.until(&format!("{PATH}.layout.yaxis.title.text === '{words}'")).await;
+        assert_eq!(drawn(&browser, 0, "y").await, numbers(&stored(&served, &id, chosen).await), "{chosen}");
+    }
+    browser.until("document.getElementById('structure-plot').data?.some(({name}) => name?.startsWith('bar '))").await;
+}
+
+#[tokio::test]
 async fn any_recorded_quantity_is_drawn_on_either_axis() {
     let Some(browser) = Browser::open().await else { return };
     let served = Served::start();

@@ -47,7 +47,26 @@ def without_time(increments):
     return [{**row, "diagnostics": {**row["diagnostics"], "elapsed_s": 0}} for row in increments]
 
 
+def cantilever():
+    """A beam of length 2 and bending stiffness 3 that its end moment rolls up to a half circle."""
+    model = arcslip.Model(dimension=2)
+    for name, place in (("wall", 0.0), ("middle", 1.0), ("tip", 2.0)):
+        model.node(name, place, 0.0)
+    model.support("wall", ["x", "y", "rz"])
+    model.beam(["wall", "middle", "tip"], 100.0, 3.0)
+    model.stage("roll", moments={"tip": 3.0 * math.pi / 2.0}, until={"load_above": 1})
+    return model
+
+
 class Program(unittest.TestCase):
+    def test_a_beam_rolls_up(self):
+        path = arcslip.solve(cantilever())
+        self.assertAlmostEqual(path.column("tip.rz")[-1], math.pi, places=8)
+        self.assertAlmostEqual(path.column("tip.y")[-1], 4.0 / math.pi, places=8)
+        self.assertAlmostEqual(path.column("elements/0.start.bending_moment")[-1], 1.5 * math.pi, places=8)
+        self.assertAlmostEqual(path.column("wall.reaction.rz")[-1], -1.5 * math.pi, places=8)
+        self.assertIn(path.largest_displacement(), ("tip.x", "tip.y"))
+
     def test_a_block_slips_where_it_must(self):
         seen = []
         path = arcslip.solve(block(), each=seen.append)
