@@ -80,7 +80,8 @@ async fn any_recorded_quantity_is_drawn_on_either_axis() {
     browser.put("#abscissa", "/contacts/0/normal_reaction").await;
     browser.until(&format!("{PATH}.layout.xaxis.title.text === 'normal reaction of tip on floor'")).await;
     assert_eq!(drawn(&browser, 0, "x").await, numbers(&stored(&served, &id, "/contacts/0/normal_reaction").await));
-    // The address alone shows the same again.
+    // The address alone shows the same again; it follows what is chosen a little later.
+    browser.until("location.search.includes('abscissa=') && location.search.includes('equilibrium')").await;
     let address = browser.page.current_url().await.expect("an address").to_string();
     browser.visit(&address).await;
     browser.until(&format!("{PATH}.layout?.xaxis.title.text === 'normal reaction of tip on floor'")).await;
