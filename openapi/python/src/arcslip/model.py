@@ -171,8 +171,8 @@ class Model:
         forces: Optional[Mapping[Node, Vector]] = None,
         displacements: Optional[Mapping[Node, Vector]] = None,
         obstacle_motion: Optional[Mapping[str, Vector]] = None,
-        moments: Optional[Mapping[Node, float]] = None,
         until: Optional[Mapping[str, Any]] = None,
+        moments: Optional[Mapping[Node, float]] = None,
     ) -> str:
         """Adds a stage. Its pattern is multiplied by the load factor, which begins at 0; `until` says where it ends,
         such as `{"load_above": 1}` or `{"displacement": {"node": "tip", "component": "y", "below": -0.2}}`."""
