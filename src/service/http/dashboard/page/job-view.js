@@ -40,7 +40,7 @@ export class JobView {
     });
     this.structure = new StructurePlot(byId("structure"), {
       chosen, pointedAt: (yes) => this.pathPlot.pointAt(yes), seen: change,
-      shown: async (...increment) => (await import("./contacts-table.js")).showContacts(byId("contacts"), ...increment),
+      shown: (...increment) => this.contacts(increment),
     }, state());
     this.directions = new Directions(byId("directions"), {
       chosen,
@@ -61,6 +61,14 @@ export class JobView {
       this.structureLater();
       this.figuresLater();
     });
+  }
+
+  /** The table of contacts, which is loaded when there is something to show: the service may have gone by then. */
+  async contacts(increment) {
+    const table = await import("./contacts-table.js").catch((problem) => {
+      this.told.said(`The table of contacts cannot be loaded: ${problem.message}`, () => this.view());
+    });
+    table?.showContacts(byId("contacts"), ...increment);
   }
 
   /** The first of the shown paths, once it can be drawn. */
