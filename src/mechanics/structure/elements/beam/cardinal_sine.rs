@@ -17,7 +17,7 @@ pub(super) fn with_derivatives(a: f64) -> [f64; 3] {
     let (mut value, mut first, mut second) = (0.0, 0.0, 0.0);
     for k in (1..TERMS).rev() {
         let order = 2.0 * k as f64;
-        let coefficient = coefficient(k);
+        let coefficient = COEFFICIENTS[k];
         value = value * square + coefficient;
         first = first * square + order * coefficient;
         second = second * square + order * (order - 1.0) * coefficient;
@@ -25,10 +25,18 @@ pub(super) fn with_derivatives(a: f64) -> [f64; 3] {
     [1.0 + square * value, a * first, second]
 }
 
-fn coefficient(k: usize) -> f64 {
-    let factorial: f64 = (2..=2 * k + 1).map(|factor| factor as f64).product();
-    if k.is_multiple_of(2) { 1.0 / factorial } else { -1.0 / factorial }
-}
+/// `c_k`
+const COEFFICIENTS: [f64; TERMS] = {
+    let mut coefficients = [1.0; TERMS];
+    let (mut factorial, mut k) = (1.0, 1);
+    while k < TERMS {
+        factorial *= (2 * k) as f64;
+        factorial *= (2 * k + 1) as f64;
+        coefficients[k] = if k.is_multiple_of(2) { 1.0 / factorial } else { -1.0 / factorial };
+        k += 1;
+    }
+    coefficients
+};
 
 /// `S(a) - S(b)`; `change` is `a - b`, which the caller knows with more digits.
 pub(super) fn difference(a: f64, b: f64, change: f64) -> f64 {
@@ -38,8 +46,8 @@ pub(super) fn difference(a: f64, b: f64, change: f64) -> f64 {
     // a^(2k+2) - b^(2k+2) = a² (a^(2k) - b^(2k)) + b^(2k) (a² - b²).
     let of_squares = change * (a + b);
     let (mut sum, mut of_powers, mut power) = (0.0, of_squares, b * b);
-    for k in 1..TERMS {
-        sum += coefficient(k) * of_powers;
+    for coefficient in &COEFFICIENTS[1..] {
+        sum += coefficient * of_powers;
         of_powers = a * a * of_powers + power * of_squares;
         power *= b * b;
     }

@@ -193,7 +193,7 @@ impl DeformedSegment {
         of_force + 2.0 * self.segment.stiffness.bending * self.bent * self.bent / self.segment.length
     }
 
-    /// 1 and the excess of the chord over that of the unstretched arc, per length of arc: 0 where the segment is
+    /// 1 plus the excess of the chord over that of the unstretched arc, per length of arc: 0 where the segment is
     /// crushed to a point.
     pub fn stretch(&self) -> f64 {
         let unstretched = self.segment.length * cardinal_sine::with_derivatives(self.half_turn)[0].abs();

@@ -47,7 +47,7 @@ export class ElementDrawing {
     this.traces.element(`bar ${color}`, ends, { color, width: this.detail.lineWidth }, [...named, force]);
   }
 
-  /** Straight between its nodes, as it is computed between them it is not drawn. */
+  /** Straight from node to node: the shape between them is not recorded. */
   beam(places, axial, named, ends) {
     const moments = ends ? [`bending moments ${components(ends.map((end) => end.bending_moment), "")} at its ends`] : [];
     for (let place = 1; place < places.length; place += 1) {
