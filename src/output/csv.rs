@@ -1,4 +1,4 @@
-//! Writes a row of a table, cell by cell: as CSV (RFC 4180), or as values.
+//! Writes a row of a table, cell by cell: as CSV (RFC 4180), or as the values of some of its columns.
 
 use serde_json::Value;
 
@@ -84,25 +84,52 @@ impl Cells for CsvRow {
     }
 }
 
-impl Cells for Vec<Value> {
+/// The values of some columns of a row.
+pub struct ChosenCells<'a> {
+    /// The columns, ascending.
+    columns: &'a [usize],
+    /// The column of the next cell.
+    column: usize,
+    values: Vec<Value>,
+}
+
+impl<'a> ChosenCells<'a> {
+    pub fn of(columns: &'a [usize]) -> Self {
+        Self { columns, column: 0, values: Vec::with_capacity(columns.len()) }
+    }
+
+    /// In the order of the columns, null where a cell is empty.
+    pub fn values(self) -> Vec<Value> {
+        self.values
+    }
+
+    fn cell(&mut self, value: impl FnOnce() -> Value) {
+        if self.columns.get(self.values.len()) == Some(&self.column) {
+            self.values.push(value());
+        }
+        self.column += 1;
+    }
+}
+
+impl Cells for ChosenCells<'_> {
     fn text(&mut self, cell: &str) {
-        self.push(Value::from(cell));
+        self.cell(|| Value::from(cell));
     }
 
     fn word(&mut self, cell: &str) {
-        self.push(if cell.is_empty() { Value::Null } else { Value::from(cell) });
+        self.cell(|| if cell.is_empty() { Value::Null } else { Value::from(cell) });
     }
 
     fn count(&mut self, value: u64) {
-        self.push(Value::from(value));
+        self.cell(|| Value::from(value));
     }
 
     fn number(&mut self, value: f64) {
-        self.push(Value::from(value));
+        self.cell(|| Value::from(value));
     }
 
     fn nothing(&mut self) {
-        self.push(Value::Null);
+        self.cell(|| Value::Null);
     }
 }
 

@@ -9,7 +9,7 @@ use crate::check::measure::Errors;
 use crate::model::JobRequest;
 use crate::model::request::recorded_forces::{element_label, recorded_elements, recorded_supports};
 use crate::model::request::{Contact, Element, Record};
-use crate::output::csv::{Cells, CsvRow};
+use crate::output::csv::{Cells, ChosenCells, CsvRow};
 use crate::result::increment::{Diagnostics, Increment, PointKind, Status};
 use serde_json::Value;
 use std::collections::HashSet;
@@ -164,11 +164,11 @@ impl Table {
         line.end()
     }
 
-    /// The values of an increment in the order of the columns, null where there is none.
-    pub fn values(&self, increment: &Increment, measure: Option<&Errors>) -> Vec<Value> {
-        let mut values = Vec::new();
-        self.write(increment, measure, &mut values);
-        values
+    /// The values of an increment in these columns, which ascend; null where there is none.
+    pub fn values(&self, increment: &Increment, measure: Option<&Errors>, columns: &[usize]) -> Vec<Value> {
+        let mut cells = ChosenCells::of(columns);
+        self.write(increment, measure, &mut cells);
+        cells.values()
     }
 
     fn write(&self, increment: &Increment, measure: Option<&Errors>, line: &mut impl Cells) {

@@ -7,15 +7,19 @@ use crate::model::{InputError, InputErrors, JobRequest};
 use crate::output::Table;
 use crate::result::increment::{Increment, PointKind, Status};
 use crate::studies::sweeps::LimitLoad;
+use crate::studies::sweeps::table::is_column;
 use indexmap::IndexMap;
 use serde_json::Value;
 
 /// Finds the responses of one path.
 #[derive(Debug)]
 pub struct ResponseFinder {
-    table: Table,
+    /// `None` where nothing is sought.
+    table: Option<Table>,
+    /// The columns of the table that are looked at, ascending.
+    columns: Vec<usize>,
     sought: IndexMap<String, SoughtResponse>,
-    /// The increment before, in this table's columns.
+    /// The increment before, in these columns.
     before: Option<PreviousIncrement>,
 }
 
@@ -28,7 +32,7 @@ struct PreviousIncrement {
 /// A response, and what is found of it so far.
 #[derive(Debug)]
 struct SoughtResponse {
-    /// The column of its value.
+    /// The place of its value among the columns.
     column: usize,
     at: ResponseLocation,
     stage: Option<String>,
@@ -51,12 +55,20 @@ impl ResponseFinder {
     /// # Errors
     /// A column or a stage that the path does not have, or a place that cannot be seen in what is recorded.
     pub fn new(responses: &IndexMap<String, Response>, request: &JobRequest) -> Result<Self, InputErrors> {
+        if responses.is_empty() {
+            return Ok(Self { table: None, columns: Vec::new(), sought: IndexMap::new(), before: None });
+        }
         let table = Table::of(request);
-        let names = if responses.is_empty() { Vec::new() } else { table.names() };
+        let names = table.names();
         let mut mistakes = Vec::new();
         let mut sought = IndexMap::with_capacity(responses.len());
         for (name, response) in responses {
-            match SoughtResponse::new(response, request, &names) {
+            let found = if is_column(name) {
+                Err(("", "a column of the sweep's own table has this name; choose another".to_owned()))
+            } else {
+                SoughtResponse::new(response, request, &names)
+            };
+            match found {
                 Ok(found) => {
                     sought.insert(name.clone(), found);
                 }
@@ -66,15 +78,20 @@ impl ResponseFinder {
                 }
             }
         }
-        if mistakes.is_empty() { Ok(Self { table, sought, before: None }) } else { Err(InputErrors(mistakes)) }
+        if !mistakes.is_empty() {
+            return Err(InputErrors(mistakes));
+        }
+        let mut columns: Vec<usize> = sought.values().flat_map(SoughtResponse::columns).collect();
+        columns.sort_unstable();
+        columns.dedup();
+        sought.values_mut().for_each(|sought| sought.look_among(&columns));
+        Ok(Self { table: Some(table), columns, sought, before: None })
     }
 
     /// Looks at the next increment of the path.
     pub fn take(&mut self, increment: &Increment, measure: Option<&Errors>) {
-        if self.sought.is_empty() {
-            return;
-        }
-        let values = self.table.values(increment, measure);
+        let Some(table) = &self.table else { return };
+        let values = table.values(increment, measure, &self.columns);
         // A stage begins with a load factor of 0, which is no way between two increments.
         let before = self.before.take().filter(|before| before.stage == increment.stage).map(|before| before.values);
         for sought in self.sought.values_mut() {
@@ -125,6 +142,21 @@ impl SoughtResponse {
             }
         }
         Ok(Self { column: column("/value", &response.value)?, at, stage: response.stage.clone(), found: None })
+    }
+
+    /// The columns of the table that are looked at.
+    fn columns(&self) -> impl Iterator<Item = usize> {
+        let reached = if let ResponseLocation::Reached { column, .. } = self.at { Some(column) } else { None };
+        [self.column].into_iter().chain(reached)
+    }
+
+    /// Looks at these columns alone from now on.
+    fn look_among(&mut self, columns: &[usize]) {
+        let place = |column: usize| columns.partition_point(|other| *other < column);
+        self.column = place(self.column);
+        if let ResponseLocation::Reached { column, .. } = &mut self.at {
+            *column = place(*column);
+        }
     }
 
     fn look(&mut self, increment: &Increment, values: &[Value], before: Option<&[Value]>) {

@@ -19,6 +19,11 @@ const COLUMNS: [&str; 9] = [
     "error",
 ];
 
+/// Whether the table has a column of this name beside the parameters and responses.
+pub(super) fn is_column(name: &str) -> bool {
+    ["run", "job"].contains(&name) || COLUMNS.contains(&name)
+}
+
 impl Found {
     /// One line per run: its number, its job at a service, its values under their pointers, its findings, and its responses under
     /// their names. A null value is an empty cell.
