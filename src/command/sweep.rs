@@ -4,6 +4,7 @@ use crate::check::judged::JudgedIncrement;
 use crate::command::options::{bounds, input};
 use crate::command::output::findings;
 use crate::command::output::outcome::{Failure, Outcome};
+use crate::model::input::limits::MAX_SWEEP_RUNS;
 use crate::model::{Sweep, decode};
 use crate::output::json_line;
 use crate::studies::sweeps::{self, Found, Row};
@@ -109,8 +110,16 @@ pub fn run(arguments: &Arguments) -> Outcome {
         if values.is_empty() {
             break;
         }
-        let runs = sweep.add_values(values).map_err(input::refused)?;
-        rows.extend(sweeps::run(&sweep, runs, threads, &accept, &done).map_err(input::refused)?);
+        let traced = sweep.add_values(values).and_then(|runs| sweeps::run(&sweep, runs, threads, &accept, &done));
+        match traced {
+            Ok(further) => rows.extend(further),
+            Err(errors) => {
+                // What has been found stays: a value between two may be one that the model cannot have.
+                progress.suspend(|| eprintln!("--refine ends after {} runs: {errors}", rows.len()));
+                sweep.drop_values_after(rows.len());
+                break;
+            }
+        }
     }
     progress.finish_and_clear();
     if let Some(failure) = written.and_then(Paths::failure) {
@@ -126,11 +135,17 @@ impl Arguments {
     /// Runs that a refinement may add.
     ///
     /// # Errors
-    /// Not one parameter of numbers.
+    /// Not one parameter of numbers, or too many runs.
     fn refinement(&self, sweep: &Sweep) -> Result<u64, Failure> {
         let numbers = |values: &[serde_json::Value]| values.iter().all(serde_json::Value::is_number);
         match sweep.variation.parameters.as_slice() {
             _ if self.refine == 0 => Ok(0),
+            [_] if sweep.runs() + u64::from(self.refine) > MAX_SWEEP_RUNS => {
+                let runs = sweep.runs() + u64::from(self.refine);
+                Err(Failure::Input(vec![format!(
+                    "--refine: these are {runs} runs; at most {MAX_SWEEP_RUNS} are taken"
+                )]))
+            }
             [one] if numbers(&one.values) && one.values.len() > 1 => Ok(u64::from(self.refine)),
             _ => Err(Failure::Input(vec!["--refine: one parameter with two numbers or more is expected".to_owned()])),
         }

@@ -94,6 +94,14 @@ impl Sweep {
         Ok(before..self.runs)
     }
 
+    /// Takes back the values of the only parameter after so many runs.
+    pub fn drop_values_after(&mut self, runs: usize) {
+        if let [parameter] = self.variation.parameters.as_mut_slice() {
+            parameter.values.truncate(runs);
+            self.runs = parameter.values.len() as u64;
+        }
+    }
+
     /// Makes and checks a run.
     ///
     /// # Errors

@@ -120,6 +120,8 @@ fn responses_are_values_at_places_of_the_path() {
             .expect("a header")
             .ends_with(",error,limit,tip at limit,largest,first slip,load at 1,tip at 0.1,contact,beyond")
     );
+    let own = sweep(&["one-bar-truss", "--replace", &format!("{FRICTION}=0.1"), "--response", "status=tip.x@end"]);
+    assert!(String::from_utf8_lossy(&own.stderr).contains("choose another"), "{own:?}");
     for (member, wrong, words) in [
         ("value", json!("tipp.x"), "did you mean `tip.x`?"),
         ("at", json!("first_limitt"), "did you mean `first_limit`?"),
@@ -158,6 +160,25 @@ fn a_refined_sweep_finds_where_its_response_jumps() {
     assert!(largest < least && least - largest < 0.01, "{largest} to {least}");
     let picture = std::fs::read_to_string(picture).expect("a picture");
     assert!(picture.lines().any(|line| line.trim() == "tip"));
+    // Between whole numbers there is a value that is refused: what was found before stays.
+    let whole = sweep(&[
+        "one-bar-truss",
+        "--replace",
+        "/analysis/max_increments=10,21,40",
+        "--refine",
+        "3",
+        "--format",
+        "json",
+    ]);
+    assert_eq!(whole.status.code(), Some(0), "{whole:?}");
+    let kept: Value = serde_json::from_slice(&whole.stdout).expect("JSON");
+    assert_eq!(
+        (kept["rows"].as_array().map(Vec::len), kept["parameters"][0]["values"].as_array().map(Vec::len)),
+        (Some(3), Some(3))
+    );
+    assert!(String::from_utf8_lossy(&whole.stderr).contains("--refine ends after 3 runs"), "{whole:?}");
+    let told = complaint(&["one-bar-truss", "--replace", &format!("{FRICTION}=0.1,0.3"), "--refine", "4000000000"]);
+    assert!(told.contains("at most 100000"), "{told}");
     let two = [&format!("{FRICTION}=0.1,0.3"), "/analysis/max_modes=8,9"];
     let told = complaint(&["one-bar-truss", "--replace", two[0], "--replace", two[1], "--refine", "2"]);
     assert!(told.contains("--refine: one parameter"), "{told}");

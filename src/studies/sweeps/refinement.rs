@@ -97,7 +97,6 @@ mod tests {
         let variation = Variation { parameters, combine: Combine::Grid, responses: Default::default() };
         let rows = [row(0, 4.0, Some(5.0)), row(1, 0.0, Some(1.0)), row(2, 1.0, Some(1.0)), row(3, 2.0, Some(1.5))];
         assert_eq!(further_values(&variation, &rows, 9), [json!(3.0)]);
-
         let lost = [row(0, 0.0, Some(1.0)), row(1, 1.0, Some(9.0)), row(2, 1.5, None), row(3, 2.0, None)];
         assert_eq!(further_values(&variation, &lost, 1), [json!(1.25)], "a limit load that disappears");
         assert!(further_values(&variation, &rows[..1], 4).is_empty());
