@@ -31,15 +31,25 @@ impl Format {
     /// The format that is asked for, or else that of the extension.
     ///
     /// # Errors
-    /// The extension names no format, or the format is of several files and goes to standard output.
+    /// The extension names no format or another than is asked for, or the format is of several files and goes to standard output.
     pub fn of(asked: Option<Self>, place: &Path) -> Result<Self, Failure> {
-        let format = match (asked, extension(place).as_deref()) {
-            (Some(format), _) => format,
-            (None, None | Some("ndjson" | "jsonl")) => Self::Ndjson,
-            (None, Some("csv")) => Self::Csv,
-            (None, Some("pvd")) => Self::Pvd,
-            (None, Some("parquet")) => Self::Parquet,
-            (None, Some(other)) => {
+        let extension = extension(place);
+        let named = match extension.as_deref() {
+            Some("ndjson" | "jsonl") => Some(Self::Ndjson),
+            Some("csv") => Some(Self::Csv),
+            Some("pvd") => Some(Self::Pvd),
+            Some("parquet") => Some(Self::Parquet),
+            _ => None,
+        };
+        let format = match (asked, named, extension.as_deref()) {
+            (Some(format), Some(named), Some(extension)) if format != named => {
+                let what =
+                    format!("--format says {format:?} and the extension of --out says `{extension}`; leave one out");
+                return Err(Failure::Input(vec![what.to_lowercase()]));
+            }
+            (Some(format), ..) | (None, Some(format), _) => format,
+            (None, None, None) => Self::Ndjson,
+            (None, None, Some(other)) => {
                 let known = "`ndjson`, `csv`, `pvd` (ParaView) and `parquet` do, or give --format";
                 return Err(Failure::Input(vec![format!("--out: the extension `{other}` names no format; {known}")]));
             }

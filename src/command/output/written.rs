@@ -36,9 +36,10 @@ pub fn extension(place: &Path) -> Option<String> {
 /// Refuses a picture whose extension promises another format than SVG.
 pub fn is_svg(option: &str, place: Option<&Path>) -> Result<(), Failure> {
     match place.and_then(extension) {
-        Some(other) if other != "svg" => {
-            Err(Failure::Input(vec![format!("{option}: pictures are SVG; found the extension `{other}`, give `svg`")]))
-        }
+        Some(other) if other != "svg" => Err(Failure::Input(vec![format!(
+            "{option}: pictures are SVG; found the extension `{other}`, give `svg`, of which other \
+             programs such as rsvg-convert or a browser make a `{other}`"
+        )])),
         _ => Ok(()),
     }
 }
