@@ -20,6 +20,9 @@ pub enum PathTable {
     Contacts,
 }
 
+/// Of a beam in the plane, at each of its ends.
+const END_FORCES: [&str; 3] = ["beam_axial_force", "shear_force", "bending_moment"];
+
 /// Most components of a vector.
 const MOST: usize = AXES.len();
 
@@ -66,12 +69,21 @@ impl PathTable {
                 for name in ["displacement", "reaction"] {
                     AXES[..dimension].iter().for_each(|axis| add(&format!("{name}_{axis}"), Kind::Number));
                 }
+                if dimension == 2 {
+                    ["rotation", "reaction_moment"].iter().for_each(|name| add(name, Kind::Number));
+                }
             }
             Self::Elements => {
                 add("element", Kind::Integer);
                 add("name", Kind::Text);
                 add("axial_force", Kind::Number);
                 AXES[..dimension].iter().for_each(|axis| add(&format!("force_{axis}"), Kind::Number));
+                if dimension == 2 {
+                    add("moment", Kind::Number);
+                    for end in ["first", "last"] {
+                        END_FORCES.iter().for_each(|name| add(&format!("{name}_at_{end}_node"), Kind::Number));
+                    }
+                }
             }
             Self::Contacts => {
                 ["node", "obstacle", "status"].iter().for_each(|name| add(name, Kind::Text));
@@ -108,6 +120,11 @@ impl PathTable {
                     for values in [&increment.displacements, &increment.supports] {
                         row.extend(components(values.get(node).unwrap_or_default(), dimension));
                     }
+                    if dimension == 2 {
+                        for values in [&increment.displacements, &increment.supports] {
+                            row.push(values.get(node).and_then(|of_node| of_node.get(dimension)).copied().into());
+                        }
+                    }
                     sheet.push(&row)
                 })
             }
@@ -115,6 +132,15 @@ impl PathTable {
                 let name = state.name.as_deref().map_or(Cell::Empty, Cell::Text);
                 let mut row = vec![index, Cell::Integer(state.element), name, state.axial_force.into()];
                 row.extend(components(state.force.as_deref().unwrap_or_default(), dimension));
+                if dimension == 2 {
+                    row.push(state.moment.into());
+                    for end in 0..2 {
+                        let own = state.ends.as_ref().map(|ends| &ends[end]);
+                        row.push(own.map(|own| own.axial_force).into());
+                        row.push(own.map(|own| own.shear_force).into());
+                        row.push(own.map(|own| own.bending_moment).into());
+                    }
+                }
                 sheet.push(&row)
             }),
             Self::Contacts => increment.contacts.iter().try_for_each(|state| {

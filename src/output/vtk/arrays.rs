@@ -55,19 +55,29 @@ impl DataArray {
     }
 }
 
-/// Writes a text as field data: the bytes of its UTF-8 as numbers, ended by 0.
-pub fn write_text<To: Write>(to: &mut Writer<To>, name: &str, value: &str) -> io::Result<()> {
+/// Texts as an array has them: of each the bytes of its UTF-8 as numbers, ended by 0.
+pub fn text_array<'t>(texts: impl Iterator<Item = &'t str>) -> String {
     let mut numbers = String::new();
-    for byte in value.bytes().filter(|byte| *byte != 0) {
-        numbers.push_str(&byte.to_string());
-        numbers.push(' ');
+    for text in texts {
+        for byte in text.bytes().filter(|byte| *byte != 0) {
+            numbers.push_str(&byte.to_string());
+            numbers.push(' ');
+        }
+        numbers.push_str("0 ");
     }
-    numbers.push('0');
-    to.create_element("Array")
+    numbers.truncate(numbers.trim_end().len());
+    numbers
+}
+
+/// Writes texts as [`text_array`] has them; `tuples` as for [`DataArray::write`].
+pub fn write_texts<To: Write>(to: &mut Writer<To>, name: &str, numbers: &str, tuples: Option<usize>) -> io::Result<()> {
+    let mut element = to
+        .create_element("Array")
         .with_attribute(("type", "String"))
         .with_attribute(("Name", name))
-        .with_attribute(("NumberOfTuples", "1"))
-        .with_attribute(("format", "ascii"))
-        .write_text_content(BytesText::from_escaped(numbers.as_str()))
-        .map(drop)
+        .with_attribute(("format", "ascii"));
+    if let Some(tuples) = tuples {
+        element = element.with_attribute(("NumberOfTuples", tuples.to_string().as_str()));
+    }
+    element.write_text_content(BytesText::from_escaped(numbers)).map(drop)
 }

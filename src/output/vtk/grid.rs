@@ -3,7 +3,7 @@
 use crate::model::JobRequest;
 use crate::model::request::recorded_forces::{recorded_elements, recorded_supports};
 use crate::model::request::{Element, Record};
-use crate::output::vtk::arrays::DataArray;
+use crate::output::vtk::arrays::{DataArray, text_array};
 use std::collections::HashMap;
 
 /// Types of cells: a point, for a spring to the ground, a line, and a line through several points.
@@ -20,6 +20,10 @@ pub struct Grid {
     pub(super) cells: [DataArray; 3],
     /// Place of each element in the model.
     pub(super) elements: DataArray,
+    /// Names of the nodes, and of the elements where some have one; as they are written.
+    pub(super) node_names: String,
+    pub(super) element_names: Option<String>,
+    pub(super) has_rotations: bool,
     pub(super) place_of_node: HashMap<String, usize>,
     pub(super) number_of_elements: usize,
     pub(super) has_contacts: bool,
@@ -67,6 +71,16 @@ impl Grid {
                 DataArray::bytes("types", types),
             ],
             elements: DataArray::integers("element", (0..).take(nodes.len())),
+            node_names: text_array(model.nodes.keys().map(String::as_str)),
+            element_names: model
+                .elements
+                .iter()
+                .any(|element| element.name().is_some())
+                .then(|| text_array(model.elements.iter().map(|element| element.name().unwrap_or_default()))),
+            has_rotations: model
+                .elements
+                .iter()
+                .any(|element| matches!(element, Element::Beam { .. } | Element::RotationalSpring { .. })),
             number_of_elements: nodes.len(),
             has_contacts: named.map_or(!model.contacts.is_empty(), |named| !named.is_empty()),
             has_supports: !recorded_supports(request).is_empty(),

@@ -1,7 +1,7 @@
 //! The file of one increment.
 
 use crate::output::table::point_kind;
-use crate::output::vtk::arrays::{DataArray, write_text};
+use crate::output::vtk::arrays::{DataArray, text_array, write_texts};
 use crate::output::vtk::grid::Grid;
 use crate::result::increment::{BeamEndForces, ElementState, Increment, Status};
 use crate::result::nodal_values::NodalValues;
@@ -71,7 +71,7 @@ impl Grid {
             ("event", increment.point.event.as_deref().unwrap_or_default()),
             ("branch", &self.branch),
         ] {
-            write_text(to, name, text)?;
+            write_texts(to, name, &text_array(std::iter::once(text)), Some(1))?;
         }
         Ok(())
     }
@@ -81,7 +81,11 @@ impl Grid {
         to.create_element("Cells")
             .write_inner_content(|to| self.cells.iter().try_for_each(|array| array.write(to, None)))?;
         to.create_element("PointData").with_attribute(("Vectors", "displacement")).write_inner_content(|to| {
+            write_texts(to, "node", &self.node_names, None)?;
             self.at_nodes("displacement", &increment.displacements).write(to, None)?;
+            if self.has_rotations {
+                self.rotations(&increment.displacements).write(to, None)?;
+            }
             if self.has_supports {
                 self.at_nodes("support_reaction", &increment.supports).write(to, None)?;
             }
@@ -92,6 +96,9 @@ impl Grid {
         })?;
         to.create_element("CellData").write_inner_content(|to| {
             self.elements.write(to, None)?;
+            if let Some(names) = &self.element_names {
+                write_texts(to, "element_name", names, None)?;
+            }
             self.force_arrays(increment).iter().try_for_each(|array| array.write(to, None))
         })?;
         Ok(())
@@ -106,6 +113,17 @@ impl Grid {
             }
         }
         DataArray::numbers(name, 3, &all)
+    }
+
+    /// About the axis out of the plane; not-a-number of nodes that have none.
+    fn rotations(&self, values: &NodalValues) -> DataArray {
+        let mut all = vec![f64::NAN; self.place_of_node.len()];
+        for (node, components) in values.iter() {
+            if let (Some(place), Some(rotation)) = (self.place_of_node.get(&**node), components.get(self.dimension)) {
+                all[*place] = *rotation;
+            }
+        }
+        DataArray::numbers("rotation", 1, &all)
     }
 
     /// Of a node with several contacts: the status that holds it most, the smallest gap, the sum of the reactions.

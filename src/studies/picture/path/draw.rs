@@ -51,7 +51,7 @@ fn draw_chart(sheet: &Sheet<'_>, curve: &Curve, displacement: &Axis, load: &Axis
             tick: &|at| displacement.tick(at),
             ticks: TICKS,
         },
-        Side { name: load.named("load factor"), range: load.range.clone(), tick: &|at| load.tick(at), ticks: TICKS },
+        Side { name: load.named(load_name(curve)), range: load.range.clone(), tick: &|at| load.tick(at), ticks: TICKS },
     ];
     let chart = chart::chart(&part, CHART, curve.title.as_deref(), sides)?;
     let on_sheet = |at: (f64, f64)| chart.backend_coord(&(displacement.drawn(at.0), load.drawn(at.1)));
@@ -65,6 +65,11 @@ fn draw_chart(sheet: &Sheet<'_>, curve: &Curve, displacement: &Axis, load: &Axis
         draw_stage(sheet, stage, drawn, &on_sheet, &mut map)?;
     }
     draw_events(sheet, curve, &on_sheet, &mut map)
+}
+
+/// Stages share the axis, and each has a load factor of its own, from 0 on.
+fn load_name(curve: &Curve) -> &'static str {
+    if curve.stages.len() > 1 { "load factor of each stage" } else { "load factor" }
 }
 
 fn draw_stage(
