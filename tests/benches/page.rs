@@ -76,7 +76,7 @@ async fn first_paint(tries: usize) -> Option<Vec<f64>> {
     let long = in_short_steps("one-bar-truss", 9_999, 5_500);
     let id = process::submit(&client, &service.url, "/v1/jobs", &long).await;
     let job = process::until(&client, &service.url, &format!("/v1/jobs/{id}"), process::has_ended).await;
-    assert_eq!(job["progress"]["increments"], 10_000);
+    assert_eq!(job["progress"]["last_index"], 9_999);
     let mut found = Vec::new();
     for _ in 0..tries {
         let browser = Browser::open().await?;

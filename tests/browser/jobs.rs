@@ -129,6 +129,19 @@ async fn a_text_of_the_readers_own_is_named_so_and_brought_back_where_another_ta
     browser.until(&format!("!{TEXT}.includes('\"sweep\"')")).await;
     assert_eq!(browser.ask(TEXT).await, before);
     assert_eq!(browser.ask(chosen).await, "klarbring");
+    browser.put("#kind", "sweep").await;
+    // Fields for what is varied change the text, and follow it.
+    let values = "[aria-label='values of parameter 1']";
+    browser.until(&format!("document.querySelector(\"{values}\")?.value.startsWith('0.1, 0.2')")).await;
+    browser.put("[aria-label='parameter 1']", "/model/contacts/*/friction").await;
+    browser.put(values, "0.25, 0.5").await;
+    browser.put("#setting-refine", "3").await;
+    browser.until("document.getElementById('verdict').textContent.includes('2 paths, each a job of its own, and up to 3 more')").await;
+    let written = "JSON.stringify(JSON.parse(document.getElementById('request').value).sweep)";
+    assert_eq!(browser.ask(written).await, "{\"replace\":{\"/model/contacts/*/friction\":[0.25,0.5]},\"refine\":3}");
+    browser.press("#sweep-add").await;
+    browser.press("[aria-label='remove parameter 2']").await;
+    browser.put("#kind", "").await;
     // The model of a job, though a text of one's own stands in the form.
     let again = "[...document.querySelectorAll('#heading button')].find(({textContent}) => /^Duplicate and edit/.test(textContent))";
     browser.ask(&format!("document.querySelector('#lists a[href=\"/?jobs={id}\"]').click()")).await;

@@ -87,7 +87,7 @@ async fn a_row_in_sight_has_a_picture_of_its_path() {
     let Some(browser) = Browser::open().await else { return };
     let served = Served::start();
     let id = served.ended(&scene("one-bar-truss")).await;
-    let stored = served.get(&format!("/v1/jobs/{id}")).await["progress"]["increments"].clone();
+    let stored = served.get(&format!("/v1/jobs/{id}")).await["progress"]["last_index"].as_u64().expect("an index") + 1;
     browser.visit(&format!("{}/", served.url())).await;
     let points = "document.querySelector('#lists .thumbnail polyline')?.getAttribute('points')?.split(' ').length";
     browser.until(&format!("{points} === {stored}")).await;

@@ -188,3 +188,56 @@ async fn bars_are_coloured_by_the_recorded_force_with_a_scale_in_the_models_unit
     assert!(computed.as_f64().is_some_and(|found| (found / most - 1.0).abs() < 1e-6), "{computed} {most}");
     browser.close(served.url(), &[]).await;
 }
+
+/// A frame with all that beams bring: bent members, a hinge, a rotational spring, a moment, and diagrams of the forces.
+#[tokio::test]
+async fn beams_are_drawn_as_they_are_bent_with_the_forces_in_them() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let beam =
+        |nodes: [&str; 2]| json!({"kind": "beam", "nodes": nodes, "axial_stiffness": 1e5, "bending_stiffness": 300.0});
+    let mut hinged = beam(["m", "c"]);
+    hinged["releases"] = json!({"c": ["rz"]});
+    let frame = json!({
+        "model": {
+            "name": "portal frame", "dimension": 2, "units": {"length": "m", "force": "kN"},
+            "nodes": {"a": [0, 0], "b": [0, 3], "m": [2, 3], "c": [4, 3], "d": [4, 0]},
+            "supports": {"a": ["x", "y"], "d": ["x", "y", "rz"]},
+            "elements": [beam(["a", "b"]), beam(["b", "m"]), hinged, beam(["c", "d"]),
+                         {"kind": "rotational_spring", "nodes": ["a"], "stiffness": 50}],
+            "stages": [{"name": "push", "forces": {"m": [10, -40]}, "moments": {"b": -20}, "until": {"load_above": 1}}]
+        },
+        "analysis": {"max_increments": 100}
+    });
+    let id = served.ended(&frame).await;
+    browser.visit(&format!("{}/?jobs={id}", served.url())).await;
+    browser.until(&trace("node")).await;
+    for name in ["hinge", "rotational spring", "moment arrow", "undeformed", "support"] {
+        browser.until(&trace(name)).await;
+    }
+    // Between the ends of each member there are points, off the straight line.
+    let bent = format!(
+        "{STRUCTURE}.data.filter(({{name}}) => name.startsWith('bar ')).reduce((sum, {{x}}) => sum + x.filter(Number.isFinite).length, 0)"
+    );
+    assert_eq!(browser.ask(&bent).await, 4 * 13, "twelve pieces of each member");
+    let page = served.get(&format!("/v1/jobs/{id}/increments?limit=1000")).await;
+    let last = page["increments"].as_array().and_then(|list| list.last()).expect("an increment").clone();
+    for (kind, words) in
+        [("bending_moment", "bending moment"), ("shear_force", "shear force"), ("axial_force", "axial force")]
+    {
+        browser.put("#diagram", kind).await;
+        browser.until(&format!("{}?.text.some((text) => text?.includes('{words}'))", trace("diagram values"))).await;
+        let values: Vec<f64> = last["elements"]
+            .as_array()
+            .expect("elements")
+            .iter()
+            .filter_map(|state| state["ends"].as_array())
+            .flatten()
+            .map(|end| end[kind].as_f64().expect("a number"))
+            .collect();
+        assert_eq!(values.len(), 8);
+        let told = browser.ask(&format!("{}.text.filter(Boolean).length", trace("diagram values"))).await;
+        assert_eq!(told, 8, "a value at each end");
+    }
+    browser.close(served.url(), &[]).await;
+}

@@ -112,6 +112,8 @@ function stageOf(reading, stage, number, { missing, obstacles }) {
   return {
     name: `${number}`,
     forces: reading.keep(stage?.forces, of("The force"), onNode),
+    moments: reading.keep(stage?.moments, of("The moment"), (value, name) =>
+      missing(name) ?? (Number.isFinite(value) ? null : "it has to be a number")),
     displacements: reading.keep(stage?.displacements, of("The displacement"), (value, name) =>
       missing(name) ?? reading.motionOr(value)),
     obstacle_motion: reading.keep(stage?.obstacle_motion, of("The motion"), (value, name) =>

@@ -5,8 +5,8 @@ import { places, tension, vector } from "./geometry.js";
 const { plus } = vector;
 
 /**
- * For each element of the model `{axial, force, ends}`: the axial force of a bar or beam or the force of a spring, null where it is
- * not known, and the forces at a beam's ends where they are recorded.
+ * For each element of the model `{axial, force, ends, moment}`: the axial force of a bar or beam or the force of a spring, null where it is
+ * not known, and where they are recorded the forces at a beam's ends and the moment of a rotational spring.
  * `isComputed`: some of them are not recorded, and have been computed here.
  */
 export function elementForces(model, increment) {
@@ -29,7 +29,7 @@ export function elementForces(model, increment) {
 /** Of a beam the mean of its ends. */
 function recordedForces(state) {
   const axial = state.ends ? (state.ends[0].axial_force + state.ends[1].axial_force) / 2 : state.axial_force;
-  return { axial: axial ?? null, force: state.force ?? null, ends: state.ends };
+  return { axial: axial ?? null, force: state.force ?? null, ends: state.ends, moment: state.moment ?? null };
 }
 
 function computed(model, increment, item, now) {

@@ -15,14 +15,15 @@ export function places(model, increment, exaggeration = 1) {
     .map(([name, place]) => [name, plus(place, increment.displacements[name], exaggeration)]));
 }
 
-/** What acts at an increment of a member of the stages (`forces`, `displacements`, `obstacle_motion`), by name: the patterns of
+/** What acts at an increment of a member of the stages (`forces`, `moments`, `displacements`, `obstacle_motion`), by name: the patterns of
  *  earlier stages times what they came to, plus that of the current stage times its load factor. */
 export function acting(model, increment, reached, member) {
   const sums = new Map();
   for (const stage of model.stages) {
     const isRunning = stage.name === increment.stage;
     const factor = isRunning ? increment.load_factor : reached.get(stage.name) ?? 0;
-    for (const [name, pattern] of Object.entries(stage[member] ?? {})) {
+    for (const [name, given] of Object.entries(stage[member] ?? {})) {
+      const pattern = [given].flat();
       sums.set(name, plus(sums.get(name) ?? times(pattern, 0), pattern, factor));
     }
     if (isRunning) break;

@@ -3,7 +3,7 @@
 import { element, fill } from "./dom.js";
 import { jobActions } from "./job-actions.js";
 import { addressOfJob } from "./state.js";
-import { isGoingOn, nameOf, statusOf, statusWords, stopSentence } from "./words.js";
+import { isGoingOn, nameOf, sentence, statusOf, statusWords, stopSentence } from "./words.js";
 
 export class JobHeading {
   /** Tells `changed()` where the lists are to be read again, `said(words)` what is refused, `titled(words)`. */
@@ -23,14 +23,16 @@ export class JobHeading {
   /** `others`: the other paths that are drawn. */
   show(path, others) {
     const { job } = path;
-    const kept = path.index.length;
-    const all = (path.last() ?? -1) + 1;
+    // The first point, of index 0, is no increment.
+    const kept = path.index.filter((index) => index > 0).length;
+    const all = path.last() ?? 0;
     const many = kept === all ? `${all} increments. ` : `${all} increments, ${kept} of them kept. `;
     const name = nameOf(job);
     this.told.titled(others ? `${name} and ${others} more` : name);
     fill(this.summary, element("div", { class: "bar" }, element("h2", {}, name),
       element("span", { class: `status ${job.status}`, id: "status", "data-status": job.status }, statusOf(job))),
     element("p", { id: "stop" }, many, isGoingOn(job) ? `The job ${statusWords(job.status)}.` : stopSentence(job),
+      job.note ? element("span", { id: "note" }, ` ${sentence(job.note)}`) : null,
       job.parent ? element("span", {}, " It follows ", element("a", {
         href: addressOfJob(job.parent.job, job.id), "data-key": "parent",
       }, "another job"), ` from increment ${job.parent.increment} in direction ${job.parent.direction}.`) : null),

@@ -10,6 +10,7 @@ import { SceneChoice } from "./scene-choice.js";
 import { analysisDefaults, description } from "./schema.js";
 import { SettingsFields } from "./settings-fields.js";
 import { change, jobOf, state } from "./state.js";
+import { SweepFields } from "./sweep-fields.js";
 import { leftOutSentence, plainWords, settingsSentences, warningSentences } from "./words.js";
 
 /** Milliseconds without input before the text is checked. */
@@ -119,10 +120,11 @@ export class RunForm {
 
   /** Fields for each part of the request that holds settings. */
   async drawSettings() {
-    const wanted = this.isStudy ? ["study", "analysis"] : ["analysis"];
+    const wanted = [...(state().as ? [state().as] : []), "analysis"];
     if (this.settings.dataset.of === wanted.join()) return;
     const document = await description();
     this.fields = new Map(wanted.map((name) => {
+      if (name === "sweep") return [name, new SweepFields((value) => this.set(name, value))];
       const schema = document.components.schemas.StudyRequest.properties[name];
       const first = name === "study" ? ["arc_lengths", "methods", "repeats", "reference"] : FIRST;
       return [name, new SettingsFields(document, schema, first, (value) => this.set(name, value))];
@@ -175,7 +177,7 @@ export class RunForm {
     }
     for (const [name, fields] of this.fields) {
       const value = isObject(request) ? request[name] ?? {} : null;
-      fields.show(isObject(value) ? value : null);
+      fields.show(isObject(value) ? value : null, request);
     }
     clearTimeout(this.soon);
     this.soon = setTimeout(() => this.check(), PAUSE);
@@ -193,7 +195,8 @@ export class RunForm {
       const [plan, defaults] = await Promise.all([post(`${this.place}?validate=true`, text), analysisDefaults()]);
       if (asked !== this.asked) return;
       if (isSweep) {
-        fill(this.verdict, element("h3", {}, "Plan"), element("p", {}, `${plan.runs} paths, each a job of its own.`));
+        fill(this.verdict, element("h3", {}, "Plan"), element("p", {}, `${plan.runs} paths, each a job of its own${
+          plan.refine ? `, and up to ${plan.refine} more where the response changes most` : ""}.`));
         this.button.disabled = false;
         return;
       }

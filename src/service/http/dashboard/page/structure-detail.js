@@ -12,6 +12,8 @@ const ARROWS = 120;
 
 export class Detail {
   constructor(model) {
+    this.dimension = model.dimension;
+    this.hasBeams = (model.elements ?? []).some(({ kind }) => kind === "beam");
     this.nodes = Object.keys(model.nodes).length;
     this.isLarge = this.nodes > LARGE;
     this.hasNames = this.nodes <= NAMED;

@@ -2,6 +2,7 @@
 // state, reactions with their friction cones.
 
 import { elementForces } from "./element-forces.js";
+import { ForceDiagrams, diagramValues } from "./force-diagrams.js";
 import { ForceColours } from "./force-colours.js";
 import { places, projection, vector } from "./geometry.js";
 import { ContactDrawing } from "./structure-contacts.js";
@@ -17,12 +18,12 @@ const { times } = vector;
 /** Against division by zero. */
 const LEAST = 1e-300;
 
-/** The largest reaction, load and axial force that have been drawn so far, for lengths and colours that can be compared. */
-export const nothingDrawn = () => ({ reaction: LEAST, load: LEAST, axial: 0 });
+/** The largest reaction, load, axial force and value of each diagram that have been drawn so far, for lengths and colours that can be compared. */
+export const nothingDrawn = () => ({ reaction: LEAST, load: LEAST, axial: 0, diagram: {} });
 
 /**
  * Traces of `increment` of a model. `turn`: from where it is seen; `exaggeration`: of displacements; `hasNames`: of nodes, null
- * for the usual; `extent` and `largest`: of what has been drawn so far, widened by this; `reached`: load factor that each stage
+ * for the usual; `diagram`: of the forces in members, null for none; `extent` and `largest`: of what has been drawn so far, widened by this; `reached`: load factor that each stage
  * came to. Answers `{traces, leftOut}`, the latter sentences on what is not in the picture.
  */
 export function structureDrawing(model, increment, view) {
@@ -35,13 +36,18 @@ export function structureDrawing(model, increment, view) {
   const loads = loadsOf(model, increment, view.reached);
   const forces = elementForces(model, increment);
   keepLargest(largest, increment, loads, forces);
+  const kind = model.dimension === 2 ? view.diagram : null;
+  const diagrams = kind ? new ForceDiagrams(kind, traces, {
+    most: largestValue(largest, kind, forces), size: extent.size, units,
+  }) : null;
+  const rotation = (name) => (model.dimension === 2 ? exaggeration * (increment.displacements[name]?.[2] ?? 0) : 0);
   // Where nodes are drawn further on, so are the obstacles that push them.
   const isAtRest = increment.index === null;
   const moved = new Map(isAtRest ? [] : [...loads.motions].map(([name, motion]) => [name, times(motion, exaggeration)]));
   const colours = new ForceColours(model, largest.axial);
   const common = { now, moved, units, detail };
   new ObstacleDrawing(model, extent, traces, { ...common, moves: loads.motions });
-  new ElementDrawing(model, traces, { ...common, forces, colours });
+  new ElementDrawing(model, traces, { ...common, forces, colours, rotation, diagrams, size: extent.size });
   drawLoads(loads, extent, traces, { ...common, most: largest.load });
   new ContactDrawing(model, increment, extent, traces, { ...common, most: largest.reaction });
   const hasNames = detail.canHaveNames && (view.hasNames ?? detail.hasNames);
@@ -52,6 +58,15 @@ export function structureDrawing(model, increment, view) {
   }
   const scale = colours.scale(units.force);
   return { traces: scale ? [...traces.all, scale] : traces.all, leftOut: detail.leftOut };
+}
+
+/** The largest value of a diagram so far. */
+function largestValue(largest, kind, forces) {
+  for (const found of forces.of) {
+    const values = diagramValues(kind, found) ?? [];
+    largest.diagram[kind] = Math.max(largest.diagram[kind] ?? 0, ...values.map(Math.abs));
+  }
+  return largest.diagram[kind] ?? 0;
 }
 
 function keepLargest(largest, increment, loads, forces) {

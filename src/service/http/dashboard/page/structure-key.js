@@ -15,10 +15,13 @@ export function structureKey(place, model) {
   const contacts = model.contacts ?? [];
   const brings = (member) => model.stages.some((stage) => Object.keys(stage[member] ?? {}).length > 0);
   fill(place,
-    elements.some(({ kind }) => kind === "bar") && !isLarge ? swatch("border-color:var(--faint)", "undeformed", "dotted") : null,
+    elements.some(({ kind }) => kind === "bar" || kind === "beam") && !isLarge ? swatch("border-color:var(--faint)", "undeformed", "dotted") : null,
     elements.some(({ kind }) => kind === "spring") ? swatch("", "spring", "dashed") : null,
+    elements.some(({ releases }) => Object.keys(releases ?? {}).length) && !isLarge ? sign("--text", "○", "hinge") : null,
+    elements.some(({ kind }) => kind === "rotational_spring") && !isLarge ? sign("--text", "@", "rotational spring") : null,
     Object.keys(model.supports ?? {}).length ? sign("--text", "△", "support") : null,
     brings("forces") ? sign("--load", "→", "load") : null,
+    brings("moments") ? sign("--load", "↺", "moment") : null,
     brings("displacements") ? sign("--imposed", "→", "imposed displacement") : null,
     contacts.length ? [
       ...STATES.map(([state, , colour]) => swatch(`--colour:var(${colour})`, state, `state ${state}`)),

@@ -2,15 +2,19 @@
 
 import { acting, vector } from "./geometry.js";
 import { fromSheet } from "./plot-style.js";
-import { components } from "./units.js";
+import { components, moment } from "./units.js";
 
 const { plus, length, unit } = vector;
 /** Lengths of arrows, as parts of the extent. */
 const ARROW = 0.2;
 const IMPOSED = 0.12;
+/** Of the arc of a moment: its radius as a part of the extent, its points, and the angle (radians) that it goes through. */
+const MOMENT = 0.05;
+const POINTS = 16;
+const THROUGH = 1.5 * Math.PI;
 
 /**
- * What acts on the nodes at an increment: `{forces, displacements, motions}`, each a map of names to vectors. Before the first
+ * What acts on the nodes at an increment: `{forces, moments, displacements, motions}`, each a map of names to vectors. Before the first
  * increment: what the stages bring at load factor 1, all of them together.
  */
 export function loadsOf(model, increment, reached) {
@@ -18,7 +22,9 @@ export function loadsOf(model, increment, reached) {
   const all = new Map(model.stages.map(({ name }) => [name, 1]));
   const seen = isAtRest ? { stage: null, load_factor: 0 } : increment;
   const of = (member) => acting(model, seen, isAtRest ? all : reached, member);
-  return { forces: of("forces"), displacements: of("displacements"), motions: of("obstacle_motion") };
+  return {
+    forces: of("forces"), moments: of("moments"), displacements: of("displacements"), motions: of("obstacle_motion"),
+  };
 }
 
 const isSome = ([, vectorOf]) => length(vectorOf) > 0;
@@ -32,12 +38,32 @@ export function drawLoads(loads, extent, traces, { now, most, units, detail }) {
     const tail = plus(place, force, -(ARROW * extent.size) / most);
     traces.arrow("load", tail, place, fromSheet("--load"), { words: `load on ${name}: ${components(force, units.force)}` });
   }
-  const imposed = [...loads.displacements].filter(here).filter(isSome);
+  for (const [name, [value]] of detail.arrows([...loads.moments].filter(here).filter(isSome), "moments")) {
+    turn("moment", now.get(name), value, fromSheet("--load"), `moment on ${name}: ${moment(value, units)}`);
+  }
+  const { dimension } = detail;
+  const shifts = [...loads.displacements].map(([name, vectorOf]) => [name, vectorOf.slice(0, dimension)]);
+  const rotations = [...loads.displacements].map(([name, vectorOf]) => [name, vectorOf.slice(dimension)]);
+  for (const [name, [angle]] of detail.arrows(rotations.filter(here).filter(isSome), "imposed rotations")) {
+    turn("imposed rotation", now.get(name), angle, fromSheet("--imposed"), `imposed rotation of ${name}: ${angle} rad`);
+  }
+  const imposed = shifts.filter(here).filter(isSome);
   for (const [name, displacement] of detail.arrows(imposed, "imposed displacements")) {
     const place = now.get(name);
     traces.arrow("imposed displacement", place, plus(place, unit(displacement), IMPOSED * extent.size), fromSheet("--imposed"), {
       words: `imposed displacement of ${name}: ${components(displacement, units.length)}`, isAtHead: true,
     });
+  }
+
+  /** An arc about a node, with its arrow in the direction of the value. */
+  function turn(trace, place, value, color, words) {
+    const radius = MOMENT * extent.size;
+    const points = Array.from({ length: POINTS + 1 }, (_, step) => {
+      const angle = -Math.PI / 4 + Math.sign(value) * (step / POINTS) * THROUGH;
+      return [place[0] + radius * Math.cos(angle), place[1] + radius * Math.sin(angle)];
+    });
+    traces.lines(trace, [points.slice(0, -1)], { color, width: 2 });
+    traces.arrow(`${trace} arrow`, points.at(-2), points.at(-1), color, { words });
   }
 }
 

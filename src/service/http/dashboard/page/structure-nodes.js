@@ -38,6 +38,12 @@ export class NodeDrawing {
       const place = now.get(name);
       if (!place) continue;
       for (const component of held) {
+        if (component === "rz") {
+          // Held against turning: a square about the node.
+          const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]];
+          traces.lines("support", [corners.map((way) => plus(place, way, height / 3))], line);
+          continue;
+        }
         const axis = AXES.indexOf(component);
         const beside = axis === 0 ? 1 : 0;
         const corner = (aside) => place.map((value, which) =>

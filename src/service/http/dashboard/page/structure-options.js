@@ -1,6 +1,7 @@
 // How the structure is drawn, as the reader chooses it: the exaggeration of its displacements, and the names of its nodes.
 
 import { button, element, fill } from "./dom.js";
+import { DIAGRAMS } from "./force-diagrams.js";
 
 /** What the largest displacement comes to where the exaggeration is fitted, as a part of the structure's size. */
 const SEEN = 0.1;
@@ -21,11 +22,14 @@ export class StructureOptions {
     this.names = element("input", {
       type: "checkbox", id: "node-names", onchange: () => { this.hasNames = this.names.checked; changed(); },
     });
+    const kinds = Object.entries(DIAGRAMS).map(([kind, { words }]) => element("option", { value: kind }, words));
+    this.kinds = element("select", { id: "diagram", onchange: () => changed() }, element("option", { value: "" }, "none"), kinds);
+    this.diagrams = element("label", { hidden: true }, "diagram ", this.kinds);
     this.place = element("div", { class: "choices" });
     fill(this.place, element("label", {}, "displacements × ", this.factor),
       button("Fit", () => this.exaggerate(String(fitted())), {
         id: "fit-exaggeration", title: "Choose a factor at which the displacements are seen",
-      }), element("label", {}, this.names, " names of nodes"), this.larger(), this.problem);
+      }), element("label", {}, this.names, " names of nodes"), this.diagrams, this.larger(), this.problem);
   }
 
   larger() {
@@ -35,6 +39,11 @@ export class StructureOptions {
       // The picture follows the size of its place.
       dispatchEvent(new Event("resize"));
     }, { id: "larger", "aria-pressed": "false" });
+  }
+
+  /** The kind of diagram beside the members, null for none. */
+  get diagram() {
+    return this.kinds.value || null;
   }
 
   exaggerate(text) {
@@ -48,7 +57,9 @@ export class StructureOptions {
   }
 
   /** A model has come whose nodes usually have their names, or may have them. */
-  allow({ hasNames, canHaveNames }) {
+  allow({ hasNames, canHaveNames, hasBeams }) {
+    this.diagrams.hidden = !hasBeams;
+    if (!hasBeams) this.kinds.value = "";
     this.names.checked = canHaveNames && (this.hasNames ?? hasNames);
     this.names.disabled = !canHaveNames;
   }

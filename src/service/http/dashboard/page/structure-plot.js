@@ -52,7 +52,8 @@ export class StructurePlot {
   }
 
   get view() {
-    return { turn: this.seen.view, exaggeration: this.options.exaggeration, hasNames: this.options.hasNames };
+    const { exaggeration, hasNames, diagram } = this.options;
+    return { turn: this.seen.view, exaggeration, hasNames, diagram };
   }
 
   /** Another increment, or a path that has grown. */

@@ -54,13 +54,25 @@ export class StructureTraces {
   }
 
   /** The line of an element, whose values are shown between its ends, as nodes have theirs at them. */
-  element(name, [from, to], line, words) {
-    const trace = this.trace(name, () => ({ mode: "lines", line, hoverinfo: "skip" }));
-    this.add(trace, [from, to], words);
+  element(name, line, style, words) {
+    const trace = this.trace(name, () => ({ mode: "lines", line: style, hoverinfo: "skip" }));
+    this.add(trace, line, words);
     this.interrupt(trace);
     for (const part of this.along) {
-      this.unmarked("element values", from.map((value, axis) => value + part * (to[axis] - value)), words);
+      const at = part * (line.length - 1);
+      const [from, to] = [line[Math.floor(at)], line[Math.ceil(at)]];
+      const rest = at - Math.floor(at);
+      this.unmarked("element values", from.map((value, axis) => value + rest * (to[axis] - value)), words);
     }
+  }
+
+  /** An outline, filled; all of one name are one trace. */
+  filled(name, outline, color) {
+    const trace = this.trace(name, () => ({
+      mode: "lines", line: { color, width: 1 }, fill: "toself", fillcolor: `${color}33`, hoverinfo: "skip",
+    }));
+    this.add(trace, outline);
+    this.interrupt(trace);
   }
 
   /** A position with values but without a mark. */

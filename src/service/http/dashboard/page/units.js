@@ -13,3 +13,6 @@ export const components = (values, unit) => `(${values.map(short).join(", ")})${
 
 /** A heading with the unit of what it heads. */
 export const headed = (words, unit) => (unit ? `${words} (${unit})` : words);
+
+/** A moment with the labels of its unit; both are needed for that. */
+export const moment = (value, { length, force }) => measured(value ?? null, length && force ? `${force} ${length}` : "");

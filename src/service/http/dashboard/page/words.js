@@ -41,10 +41,12 @@ export const pointWords = ({ kind, bifurcation }) =>
   `${kindWords(kind)}${bifurcation && !kind.includes("bifurcation") ? " and bifurcation" : ""}`;
 export const isGoingOn = (job) => job.status === "queued" || job.status === "running";
 
+/** Words as a sentence. */
+export const sentence = (told) => `${told[0].toUpperCase()}${told.slice(1)}.`;
 export function stopSentence(job) {
   if (job.error) return `It failed: ${job.error}.`;
   const told = job.report?.sentence;
-  if (told) return `${told[0].toUpperCase()}${told.slice(1)}.`;
+  if (told) return sentence(told);
   return job.stop_reason ? STOPPED[job.stop_reason] ?? plainWords(job.stop_reason) : "";
 }
 
