@@ -4,7 +4,6 @@ use crate::check::judged::JudgedIncrement;
 use crate::command::options::{bounds, input};
 use crate::command::output::findings;
 use crate::command::output::outcome::{Failure, Outcome};
-use crate::model::input::limits::MAX_SWEEP_RUNS;
 use crate::model::{Sweep, decode};
 use crate::output::json_line;
 use crate::studies::sweeps::{self, Found, Row};
@@ -37,8 +36,8 @@ pub struct Arguments {
     response: Vec<(String, serde_json::Value)>,
     /// Trace up to N further runs, each in the middle of two values of the only parameter between which the first response,
     /// or the first limit load, changes most.
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    refine: u32,
+    #[arg(long, value_name = "N")]
+    refine: Option<u64>,
     /// Paths traced at a time. Default: one per processor.
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
@@ -89,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     arguments.written.check()?;
     let mut sweep = Sweep::read(&arguments.text()?).map_err(input::refused)?;
     let threads = arguments.threads.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
-    let refine = arguments.refinement(&sweep)?;
+    let refine = sweep.variation.refine;
     let progress = findings::progress_bar(sweep.runs() + refine);
     let written = arguments.paths.as_deref().map(Paths::in_folder).transpose()?;
     let accept = |run: u64, judged: &JudgedIncrement| match &written {
@@ -132,29 +131,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
 }
 
 impl Arguments {
-    /// Runs that a refinement may add.
-    ///
-    /// # Errors
-    /// Not one parameter of numbers, or too many runs.
-    fn refinement(&self, sweep: &Sweep) -> Result<u64, Failure> {
-        let numbers = |values: &[serde_json::Value]| values.iter().all(serde_json::Value::is_number);
-        match sweep.variation.parameters.as_slice() {
-            _ if self.refine == 0 => Ok(0),
-            [_] if sweep.runs() + u64::from(self.refine) > MAX_SWEEP_RUNS => {
-                let runs = sweep.runs() + u64::from(self.refine);
-                Err(Failure::Input(vec![format!(
-                    "--refine: these are {runs} runs; at most {MAX_SWEEP_RUNS} are taken"
-                )]))
-            }
-            [one] if numbers(&one.values) && one.values.len() > 1 => Ok(u64::from(self.refine)),
-            _ => Err(Failure::Input(vec!["--refine: one parameter with two numbers or more is expected".to_owned()])),
-        }
-    }
-
     /// The document, with the values of the command line instead of its own.
     fn text(&self) -> Result<Vec<u8>, Failure> {
         let text = self.model.text()?;
-        if self.replace.is_empty() && self.combine.is_none() && self.response.is_empty() {
+        if self.replace.is_empty() && self.combine.is_none() && self.response.is_empty() && self.refine.is_none() {
             return Ok(text);
         }
         let mut replace = serde_json::Map::new();
@@ -176,6 +156,9 @@ impl Arguments {
                 "responses".to_owned(),
                 self.response.iter().cloned().collect::<serde_json::Map<_, _>>().into(),
             );
+        }
+        if let Some(refine) = self.refine {
+            sweep.insert("refine".to_owned(), refine.into());
         }
         if let Some(combine) = self.combine {
             let name = match combine {

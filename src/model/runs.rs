@@ -35,7 +35,7 @@ impl Sweep {
     /// # Errors
     /// As for [`decode::decode`]; places that the document cannot have; too many runs.
     pub fn read(text: &[u8]) -> Result<Self, InputErrors> {
-        let form = decode::replacements(text)?;
+        let mut form = decode::replacements(text)?;
         let wrong = |error: serde_json::Error| InputErrors(vec![InputError::new("", error.to_string())]);
         let mut base: Value = serde_json::from_slice(text).map_err(wrong)?;
         let name = base.pointer("/model/name").and_then(Value::as_str);
@@ -49,7 +49,7 @@ impl Sweep {
         }
         let mut parameters = Vec::with_capacity(form.replace.len());
         let mut places = Vec::new();
-        for pointer in form.replace {
+        for pointer in std::mem::take(&mut form.replace) {
             let values = posted.get("replace").and_then(|replace| replace.get(&pointer)).and_then(Value::as_array);
             match places_of(&base, &pointer, MAX_SWEEP_PLACES - places.len()) {
                 Ok(found) => places.extend(found.into_iter().map(|place| (parameters.len(), place))),
@@ -66,7 +66,11 @@ impl Sweep {
             }
         };
         if mistakes.is_empty() {
-            let variation = Variation { parameters, combine: form.combine, responses: form.responses };
+            mistakes.extend(check_refinement(form.refine, runs, &parameters).err());
+        }
+        if mistakes.is_empty() {
+            let (combine, responses, refine) = (form.combine, form.responses, form.refine);
+            let variation = Variation { parameters, combine, responses, refine };
             let template = Template::new(base, &places, &variation.values(0));
             Ok(Self { name, variation, runs, template })
         } else {
@@ -191,6 +195,22 @@ fn count(combine: Combine, parameters: &[SweepParameter]) -> Result<u64, InputEr
         return Err(InputError::new("/sweep/replace", detail));
     }
     Ok(runs)
+}
+
+/// A refinement is of one parameter with numbers, and within the bound of runs.
+fn check_refinement(refine: u64, runs: u64, parameters: &[SweepParameter]) -> Result<(), InputError> {
+    let refused = |detail| Err(InputError::new("/sweep/refine", detail));
+    match parameters {
+        _ if refine == 0 => Ok(()),
+        [one] if one.values.len() < 2 || !one.values.iter().all(Value::is_number) => {
+            refused("one parameter with two numbers or more is expected".to_owned())
+        }
+        [_] => match runs.saturating_add(refine) {
+            all if all > MAX_SWEEP_RUNS => refused(format!("these are {all} runs; at most {MAX_SWEEP_RUNS} are taken")),
+            _ => Ok(()),
+        },
+        _ => refused("one parameter with two numbers or more is expected, and these are several parameters".to_owned()),
+    }
 }
 
 /// The places at which a value is inserted: those of the pointer, with every item of a list or member of an object in place of

@@ -85,6 +85,8 @@ class Arcslip:
             try:
                 with self.open("GET", f"/v1/jobs/{identity}/stream", headers=headers) as lines:
                     for line in lines:
+                        if not line.strip():
+                            continue  # The stream is alive, and has nothing new.
                         increment = json.loads(line)
                         last = increment["index"]
                         yield increment

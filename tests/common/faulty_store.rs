@@ -3,8 +3,9 @@
 use arcslip::service::store::contract::error::Result;
 use arcslip::service::store::contract::interface::Store;
 use arcslip::service::store::{
-    Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed, NewFollower, NewJob,
-    NewSweep, Origin, Page, Retried, Standing, Status, StoreError, Submitted,
+    Batch, Change, Claim, Ending, FeedPage, FeedPosition, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter,
+    Listed, NewFollower, NewJob, NewSweep, Origin, Page, Retried, Standing, Status, StoreError, Submitted,
+    SweepRefinement,
 };
 use async_trait::async_trait;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -76,6 +77,14 @@ impl Store for FaultyStore {
         self.inner.submit_sweep(sweep).await
     }
 
+    async fn refinable_sweeps(&self) -> Result<Vec<Uuid>> {
+        self.inner.refinable_sweeps().await
+    }
+
+    async fn refine_sweep(&self, refinement: SweepRefinement) -> Result<bool> {
+        self.inner.refine_sweep(refinement).await
+    }
+
     async fn cancel_sweep(&self, id: Uuid) -> Result<Vec<Uuid>> {
         self.inner.cancel_sweep(id).await
     }
@@ -83,6 +92,14 @@ impl Store for FaultyStore {
     async fn follow(&self, job: NewFollower) -> Result<Option<Submitted>> {
         self.room()?;
         self.inner.follow(job).await
+    }
+
+    async fn changes(&self, owner: Option<&str>, after: Option<FeedPosition>, most: u32) -> Result<FeedPage> {
+        self.inner.changes(owner, after, most).await
+    }
+
+    fn any_change(&self) -> watch::Receiver<u64> {
+        self.inner.any_change()
     }
 
     async fn request(&self, id: Uuid) -> Result<Option<String>> {

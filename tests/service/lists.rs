@@ -51,7 +51,7 @@ async fn stored(store: &dyn Store, summary: &str) {
         asked: None,
         max_increments: 1,
     };
-    store.submit_sweep(NewSweep { whole, runs: vec![run] }).await.expect("stored");
+    store.submit_sweep(NewSweep { whole, runs: vec![run], refine: 0 }).await.expect("stored");
 }
 
 async fn a_list_reads_what_it_shows_of_large_jobs(database: Database) {

@@ -5,11 +5,13 @@ mod common;
 
 mod access;
 mod backup;
+mod changes;
 mod checks;
 mod client;
 mod dashboard;
 mod disk;
 mod errors;
+mod examples;
 mod faults;
 mod follow;
 mod hosts;

@@ -112,11 +112,7 @@ async fn a_model_that_ends_its_process_takes_no_other_along() {
     assert_eq!((&job["status"], &job["counted_losses"]), (&json!("failed"), &json!(3)), "{job}");
     assert!((3..=4).contains(&losses) && job["attempt"] == losses, "{job}");
     let error = job["error"].as_str().expect("a text");
-    assert!(
-        error.contains(&format!("lost {losses} times in a row"))
-            && error.contains("the process that works on the job ends"),
-        "{error}"
-    );
+    assert!(error.contains(&format!("lost {losses} times in a row")) && error.contains("its process ended"), "{error}");
     assert_eq!(lives, losses + 1, "all but the last were ended by the model");
     for (increments, id) in others {
         let job = get(&client, &process.url, &format!("/v1/jobs/{id}")).await.expect("the job");

@@ -7,7 +7,7 @@ use arcslip::model::request::Explore;
 use arcslip::service::store::contract::interface::Store;
 use arcslip::service::store::{
     Batch, Branch, Ending, Keep, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, NewRun, NewSweep, Page, Parent,
-    Status, Submitted, Task,
+    Status, Submitted, SweepRefinement, Task,
 };
 use std::time::Duration;
 use uuid::Uuid;
@@ -81,7 +81,7 @@ async fn a_sweep_ends_with_its_runs_however_they_do(database: Database) {
         idempotency_key: Some(key.to_owned()),
         ..job(1)
     };
-    let new = |key: &str| NewSweep { whole: whole(key), runs: (0..5).map(run).collect() };
+    let new = |key: &str| NewSweep { whole: whole(key), runs: (0..5).map(run).collect(), refine: 0 };
     let Ok(Submitted::Created(sweep)) = store.submit_sweep(new("one")).await else { panic!("not stored") };
     assert_eq!((sweep.task, sweep.status, sweep.last_index), (Task::Sweep, Status::Running, None));
     assert!(matches!(store.submit_sweep(new("one")).await, Ok(Submitted::Repeated(found)) if found.id == sweep.id));
@@ -150,12 +150,58 @@ async fn a_sweep_ends_with_its_runs_however_they_do(database: Database) {
     let many = NewSweep {
         whole: NewJob { max_increments: 1_200, most_queued: 2_000, ..whole("many") },
         runs: (0..1_200).map(run).collect(),
+        refine: 7,
     };
     let Ok(Submitted::Created(many)) = store.submit_sweep(many).await else { panic!("not stored") };
     assert!(store.cancel_sweep(many.id).await.expect("an answer").is_empty(), "nobody is at work");
     let standing = store.standing(many.id).await.expect("an answer").expect("a sweep");
     assert_eq!((standing.status, standing.last_index), (Status::Cancelled, Some(1_199)));
     assert_eq!(tally().await, (0, 0));
+
+    // Further runs are queued once, however many see that the others have ended; and a sweep that waits for some is cancelled.
+    for cancelled in [false, true] {
+        let key = if cancelled { "refined and cancelled" } else { "refined" };
+        let new =
+            NewSweep { whole: NewJob { max_increments: 2, ..whole(key) }, runs: (0..2).map(run).collect(), refine: 3 };
+        let Ok(Submitted::Created(sweep)) = store.submit_sweep(new).await else { panic!("not stored") };
+        let end_all = async || {
+            while let Some(claim) = store.claim("worker", MINUTE).await.expect("an answer") {
+                assert!(!store.refinable_sweeps().await.expect("an answer").contains(&sweep.id));
+                let ending = Ending { status: Status::Completed, ..Ending::failed("") };
+                store.finish(&claim.lease, &Batch::default(), &ending).await.expect("an answer");
+            }
+        };
+        end_all().await;
+        assert_eq!(store.refinable_sweeps().await.expect("an answer"), [sweep.id]);
+        let further = |before: u64, runs: u64| SweepRefinement {
+            sweep: sweep.id,
+            before,
+            plan: "[1]".to_owned(),
+            summary: None,
+            runs: (before..before + runs).map(run).collect(),
+        };
+        let refined = async |before, runs| store.refine_sweep(further(before, runs)).await.expect("an answer");
+        assert!(refined(2, 2).await && !refined(2, 2).await);
+        assert!(!refined(4, 1).await, "its runs have not ended");
+        end_all().await;
+        if cancelled {
+            assert!(store.cancel_sweep(sweep.id).await.expect("an answer").is_empty());
+            assert!(!refined(4, 1).await);
+        } else {
+            assert!(refined(4, 0).await, "none is worth while");
+        }
+        let whole = found(store.as_ref(), sweep.id).await;
+        let status = if cancelled { Status::Cancelled } else { Status::Completed };
+        assert_eq!((whole.status, whole.last_index, whole.max_increments), (status, Some(3), 4));
+        let numbers: Vec<serde_json::Value> = store
+            .increments(sweep.id, None, ALL)
+            .await
+            .expect("rows")
+            .iter()
+            .map(|row| serde_json::from_str::<serde_json::Value>(&row.body).expect("JSON")["run"].clone())
+            .collect();
+        assert_eq!(numbers, [0, 1, 2, 3]);
+    }
 
     // Dropped while its runs wait and work: all of it is gone.
     let Ok(Submitted::Created(sweep)) = store.submit_sweep(new("three")).await else { panic!("not stored") };

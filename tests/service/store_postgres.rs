@@ -103,7 +103,7 @@ async fn a_process_goes_on_with_a_schema_of_a_later_version_unless_that_says_oth
     sqlx::query("INSERT INTO compatibility VALUES (99)").execute(&mut later).await.expect("changed");
     later.close().await.expect("closed");
     let refused = not_opened(&database.location.to_string()).await;
-    assert!(refused.contains("asks for schema 99, and this one knows 6"), "{refused}");
+    assert!(refused.contains("asks for schema 99, and this one knows 8"), "{refused}");
     assert!(before.probe().await.is_ok(), "whoever is at work goes on");
 }
 

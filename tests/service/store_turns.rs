@@ -34,7 +34,7 @@ async fn sweep(store: &dyn Store, owner: &str, runs: usize) -> Uuid {
         max_increments: 1,
     };
     let whole = NewJob { task: Task::Sweep, max_increments: runs as u64, ..of(owner) };
-    match store.submit_sweep(NewSweep { whole, runs: vec![run; runs] }).await.expect("stored") {
+    match store.submit_sweep(NewSweep { whole, runs: vec![run; runs], refine: 0 }).await.expect("stored") {
         Submitted::Created(sweep) => sweep.id,
         other => panic!("{other:?}"),
     }

@@ -181,5 +181,5 @@ fn a_refined_sweep_finds_where_its_response_jumps() {
     assert!(told.contains("at most 100000"), "{told}");
     let two = [&format!("{FRICTION}=0.1,0.3"), "/analysis/max_modes=8,9"];
     let told = complaint(&["one-bar-truss", "--replace", two[0], "--replace", two[1], "--refine", "2"]);
-    assert!(told.contains("--refine: one parameter"), "{told}");
+    assert!(told.contains("sweep.refine: one parameter"), "{told}");
 }

@@ -43,6 +43,47 @@ async fn text(server: &TestServer, place: &str) -> String {
     answer.text().await.expect("text")
 }
 
+/// As the command line does it, over a restart and by two processes at a time.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_sweep_is_refined_where_its_response_jumps() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let database = folder.path().join("jobs.db");
+    let mut request = sweep(json!({FRICTION: [0.1, 0.3, 0.5]}));
+    request["sweep"]["responses"] = json!({"tip": {"value": "tip.x", "at": {"value": "load_factor", "reaches": 0.25}}});
+    request["sweep"]["refine"] = json!(8);
+    let server = TestServer::start(&database, PathSolver).await;
+    let place = submitted(&server, &request).await;
+    assert!(server.stop().await);
+    let server = TestServer::start(&database, PathSolver).await;
+    let _other = TestServer::start(&database, PathSolver).await;
+    let whole = ended(&server, &place).await;
+    assert_eq!((&whole["status"], &whole["progress"]), (&json!("completed"), &json!({"ended": 11, "of": 11})));
+    assert_eq!(whole["refine"], 8);
+    let file = folder.path().join("sweep.json");
+    std::fs::write(&file, request.to_string()).expect("written");
+    let told = std::process::Command::new(env!("CARGO_BIN_EXE_arcslip"))
+        .args(["sweep", "--format", "json"])
+        .arg(file)
+        .output()
+        .expect("the program runs");
+    let told: Value = serde_json::from_slice(&told.stdout).expect("JSON");
+    assert_eq!(whole["parameters"], told["parameters"]);
+    let rows = server.get_json(&format!("{place}/rows")).await;
+    let mut rows: Vec<Value> = rows["rows"].as_array().expect("rows").clone();
+    rows.sort_by_key(|row| row["run"].as_u64());
+    for (one, other) in rows.iter().zip(told["rows"].as_array().expect("rows")) {
+        assert_eq!((&one["values"], &one["responses"]), (&other["values"], &other["responses"]));
+    }
+    // A value between two that the model cannot have ends the refinement with what was found.
+    let mut request = sweep(json!({"/analysis/max_increments": [10, 21]}));
+    request["sweep"]["refine"] = json!(3);
+    let whole = ended(&server, &submitted(&server, &request).await).await;
+    assert_eq!((&whole["status"], &whole["progress"]), (&json!("completed"), &json!({"ended": 2, "of": 2})));
+    request["sweep"]["replace"]["/analysis/max_modes"] = json!([8, 9]);
+    let refused: Value = server.post("/v1/sweeps", &request).await.json().await.expect("a problem");
+    assert_eq!(refused["errors"][0]["pointer"], "/sweep/refine", "{refused}");
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn a_sweep_finds_the_limit_loads_of_its_runs() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -154,7 +195,7 @@ async fn a_cancelled_sweep_keeps_what_it_has_found() {
     let place = submitted(&server, &sweep(json!({FRICTION: [0.1, 0.2, 0.3, 0.4]}))).await;
     let of_sweep = async || server.get_json("/v1/jobs").await["jobs"].as_array().expect("jobs").clone();
     // One at work, one that is deleted, two that wait.
-    while !of_sweep().await.iter().any(|job| job["progress"]["increments"] == 4) {
+    while !of_sweep().await.iter().any(|job| job["progress"]["increments"] == 3) {
         tokio::time::sleep(Duration::from_millis(10)).await;
     }
     let waiting = of_sweep().await.into_iter().find(|job| job["status"] == "queued").expect("one that waits");

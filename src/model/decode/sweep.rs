@@ -1,12 +1,13 @@
 //! Reads the replacements of a sweep; the values are kept as they are written.
 
-use crate::model::decode::reader::{Choices, Fields, Input, number, text};
+use crate::model::decode::reader::{Choices, Fields, Input, count, number, text};
 use crate::model::input::mistakes::Mistakes;
 use crate::model::request::response::{NamedPlace, ReachedValue, Response, ResponsePlace, load_factor};
 use crate::model::request::sweep::Combine;
 use indexmap::IndexMap;
 
-const SWEEP: Fields = Fields { what: "what a sweep replaces", known: &["replace", "combine", "responses"], later: &[] };
+const SWEEP: Fields =
+    Fields { what: "what a sweep replaces", known: &["replace", "combine", "responses", "refine"], later: &[] };
 
 const COMBINE: Choices<Combine> =
     Choices { what: "a way to combine values", known: &[("grid", Combine::Grid), ("list", Combine::List)], later: &[] };
@@ -33,6 +34,7 @@ pub struct Form {
     pub replace: Vec<String>,
     pub combine: Combine,
     pub responses: IndexMap<String, Response>,
+    pub refine: u64,
 }
 
 pub(super) fn sweep(input: &Input, mistakes: &mut Mistakes) -> Option<Form> {
@@ -48,7 +50,8 @@ pub(super) fn sweep(input: &Input, mistakes: &mut Mistakes) -> Option<Form> {
         .with_default("combine", Combine::default(), mistakes, |input, mistakes| input.choice(&COMBINE, mistakes));
     let responses =
         object.with_default("responses", IndexMap::new(), mistakes, |input, mistakes| input.map(mistakes, response));
-    Some(Form { replace: replace?, combine: combine?, responses: responses? })
+    let refine = object.with_default("refine", 0, mistakes, count);
+    Some(Form { replace: replace?, combine: combine?, responses: responses?, refine: refine? })
 }
 
 fn response(input: &Input, mistakes: &mut Mistakes) -> Option<Response> {

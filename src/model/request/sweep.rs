@@ -30,6 +30,16 @@ pub struct Replacements {
     /// What is told of each path, by a name of one's own.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub responses: IndexMap<String, Response>,
+    /// Further runs at most, each in the middle of the two values of the only parameter between which the first response, or
+    /// the first limit load, changes most; chosen when the runs before them have ended.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[cfg_attr(feature = "server", schema(maximum = 100_000))]
+    pub refine: u64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+fn is_zero(number: &u64) -> bool {
+    *number == 0
 }
 
 /// How values of several places meet.
@@ -63,6 +73,9 @@ pub struct Variation {
     pub combine: Combine,
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub responses: IndexMap<String, Response>,
+    /// Further runs at most, where the first response changes most.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub refine: u64,
 }
 
 impl Variation {

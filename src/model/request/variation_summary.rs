@@ -99,6 +99,7 @@ mod tests {
             parameters: (0..parameters).map(parameter).collect(),
             combine: Combine::List,
             responses: Default::default(),
+            refine: 0,
         }
     }
 

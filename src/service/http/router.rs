@@ -2,7 +2,7 @@
 
 use crate::service::http::access::{admission, headers};
 use crate::service::http::calls::{
-    follow, increments, jobs, metrics, openapi, probes, request, scenes, studies, sweeps,
+    changes, follow, increments, jobs, metrics, openapi, probes, request, scenes, studies, sweeps,
 };
 use crate::service::http::input::parameters::{self, CallsWithoutParameters};
 use crate::service::http::state::service::Service;
@@ -45,6 +45,7 @@ fn api() -> OpenApiRouter<Service> {
         .routes(routes!(sweeps::table_csv))
         .routes(routes!(sweeps::table_txt))
         .routes(routes!(sweeps::picture))
+        .routes(routes!(changes::changes))
         .routes(routes!(scenes::list))
         .routes(routes!(scenes::get))
         .routes(routes!(probes::alive))

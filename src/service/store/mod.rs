@@ -20,9 +20,9 @@ pub use contract::error::StoreError;
 pub use contract::interface::Store;
 pub use contract::location::Location;
 pub use contract::record::{
-    Batch, Branch, Checkpoint, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed,
-    Membership, NewFollower, NewJob, NewRun, NewSweep, Origin, Page, Parent, Retried, RunOf, Standing, Status,
-    Submitted, Task,
+    Batch, Branch, Checkpoint, Claim, Ending, FeedEntry, FeedPage, FeedPosition, JobRecord, Keep, Lease, LeaseAnswer,
+    Line, ListFilter, Listed, Membership, NewFollower, NewJob, NewRun, NewSweep, Origin, Page, Parent, Retried, RunOf,
+    Standing, Status, Submitted, SweepRefinement, Task,
 };
 
 pub use contract::signals::Change;

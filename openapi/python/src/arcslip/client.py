@@ -100,19 +100,23 @@ class Client:
         *,
         combine: str = "grid",
         responses: Optional[Mapping[str, Mapping[str, Any]]] = None,
+        refine: int = 0,
         key: Optional[str] = None,
         **analysis: Any,
     ) -> "Sweep":
         """Queues a path for each combination of values at JSON pointers, such as
         `{"/model/contacts/0/friction": [0.1, 0.3]}`; a step `*` stands for every item. `combine` is `"grid"`, each value
         with each, or `"list"`, the first of each, the second of each and so on. `responses` are told of each path, such as
-        `{"tip at limit": {"value": "tip.x", "at": "first_limit"}}`."""
+        `{"tip at limit": {"value": "tip.x", "at": "first_limit"}}`. `refine` adds so many runs at most, where the first
+        response changes most between two values of the only parameter."""
         request = as_request(model, analysis)
         for pointer, own in replace.items():
             if isinstance(own, (str, bytes, Mapping)) or not hasattr(own, "__iter__"):
                 raise TypeError(f"{pointer}: a list or an array of values is expected, found {own!r}")
         values = {pointer: plain(list(own) if not hasattr(own, "tolist") else own) for pointer, own in replace.items()}
         request["sweep"] = {"replace": values, "combine": combine, **({"responses": plain(responses)} if responses else {})}
+        if refine:
+            request["sweep"]["refine"] = refine
         return Sweep(self, self.post("/v1/sweeps", request, key))
 
     def study(
@@ -293,6 +297,8 @@ class Job(Resource):
             try:
                 with self.client.open("GET", f"{self.address}/stream", headers=headers) as lines:
                     for line in lines:
+                        if not line.strip():
+                            continue  # The stream is alive, and has nothing new.
                         increment = json.loads(line)
                         last = increment["index"]
                         yield increment

@@ -1,5 +1,6 @@
 //! The calls: a function for each operation, with its OpenAPI description.
 
+pub mod changes;
 pub mod follow;
 pub mod increments;
 pub mod jobs;

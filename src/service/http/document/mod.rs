@@ -5,6 +5,7 @@ pub(crate) mod operations;
 
 use crate::service::http::access::admission;
 use crate::service::http::answer::problem::{Document, Kind};
+use crate::service::http::view::change::{ChangedTask, DeletedTask};
 use crate::service::jobs::Limits;
 use std::fmt::Write;
 use utoipa::OpenApi;
@@ -46,7 +47,7 @@ const TOKEN: &str = "token";
 #[openapi(
     info(title = "arcslip"),
     external_docs(url = "/manual", description = "The manual: models, method, results, operation"),
-    components(schemas(Document)),
+    components(schemas(Document, ChangedTask, DeletedTask)),
     tags(
         (name = JOBS, description = "Paths to be traced"),
         (name = INCREMENTS, description = "Points of a path, as they converge or later"),

@@ -76,6 +76,8 @@ const OF_A_SWEEP: [&str; 8] = [
     "cancel_sweep",
     "delete_sweep",
 ];
+/// Answers by operation, status and media type, and a `problem`; written by a test.
+const EXAMPLES: &str = include_str!("examples.json");
 /// The built-in scene in the examples.
 const EXAMPLE: &str = "klarbring";
 
@@ -104,6 +106,7 @@ pub(super) fn complete(path: &str, operation: &mut Operation) -> serde_json::Res
     if TAGGED.contains(&id.as_str()) {
         tagged(operation);
     }
+    answered(operation, &id)?;
     match id.as_str() {
         "submit_job" => {
             leads_to(operation, &OF_A_JOB);
@@ -118,7 +121,7 @@ pub(super) fn complete(path: &str, operation: &mut Operation) -> serde_json::Res
         "submit_sweep" => {
             leads_to(operation, &OF_A_SWEEP);
             let mut sweep = scene()?;
-            sweep["sweep"] = json!({"replace": {"/model/contacts/0/friction": [0.1, 0.2]}, "combine": "grid"});
+            sweep["sweep"] = json!({"replace": {"/model/contacts/0/friction": [1.5, 2.0]}, "combine": "grid"});
             exemplified(operation, sweep);
         }
         "follow_direction" => {
@@ -126,6 +129,21 @@ pub(super) fn complete(path: &str, operation: &mut Operation) -> serde_json::Res
             exemplified(operation, json!({"increment": 7, "direction": 0, "max_increments": 6}));
         }
         _ => {}
+    }
+    Ok(())
+}
+
+/// Adds what the service has answered to such a call.
+fn answered(operation: &mut Operation, id: &str) -> serde_json::Result<()> {
+    let mut examples: Value = serde_json::from_str(EXAMPLES)?;
+    for (status, response) in &mut operation.responses.responses {
+        let RefOr::T(response) = response else { continue };
+        for (media_type, content) in &mut response.content {
+            let RefOr::T(content) = content else { continue };
+            let example =
+                if status == "default" { &mut examples["problem"] } else { &mut examples[id][status][media_type] };
+            content.example = Some(example.take()).filter(|example| !example.is_null());
+        }
     }
     Ok(())
 }

@@ -5,7 +5,9 @@ use crate::service::http::access::rates::subscriber;
 use crate::service::http::answer::problem::{Kind, Problem};
 use crate::service::http::state::bodies::Read;
 use crate::service::http::state::service::Service;
+use crate::service::http::view::change;
 use crate::service::jobs::{Caller, Client, Posted};
+use crate::service::store::FeedPosition;
 use axum::extract::{ConnectInfo, FromRequest, FromRequestParts, Path, Query, Request};
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, HeaderValue, Uri, header};
@@ -138,6 +140,13 @@ pub fn last_event_id(event: &str, headers: &HeaderMap) -> Result<Option<u64>, Pr
     };
     let text = value.to_str().map_err(|_| refuse())?;
     text.parse().ok().filter(|index| *index <= LARGEST_INDEX).map(Some).ok_or_else(refuse)
+}
+
+/// The `Last-Event-ID` header of the feed of changes: the id of the last event the client has.
+pub fn feed_position(headers: &HeaderMap) -> Result<Option<FeedPosition>, Problem> {
+    let Some(value) = only("Last-Event-ID", headers)? else { return Ok(None) };
+    let refuse = || Problem::parameter("Last-Event-ID", "the id of an event of this feed is expected");
+    value.to_str().ok().and_then(change::position).map(Some).ok_or_else(refuse)
 }
 
 /// An index that is not larger than the largest one.

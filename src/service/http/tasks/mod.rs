@@ -4,6 +4,7 @@
 //! [`Target`](target::Target) of the [`Resource`](resource::Resource) that it is about, and passes it on. Each call only has
 //! its own OpenAPI description: the document has one for each address.
 
+pub mod feed;
 pub mod findings;
 pub mod requester;
 pub mod resource;

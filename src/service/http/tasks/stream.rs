@@ -27,31 +27,34 @@ use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
 
 const NDJSON: &str = "application/x-ndjson";
-const EVENT_STREAM: &str = "text/event-stream";
+pub(super) const EVENT_STREAM: &str = "text/event-stream";
 const PAGE: Page = Page { rows: 200, bytes: 1 << 20 };
 /// Jobs solved by another process may give no signal here; their streams read the store at this interval.
-const LOOK_AGAIN: Duration = Duration::from_secs(1);
+pub(super) const LOOK_AGAIN: Duration = Duration::from_secs(1);
 const KEEP_ALIVE: Duration = Duration::from_secs(15);
 /// The number of streams that may read the store at a time: half of the store's readers are left for the other calls.
 pub const READING_AT_ONCE: usize = 2;
 /// After which time a client should reconnect when the service has shut down.
 const RETRY: Duration = Duration::from_secs(2);
 
+/// Why a stream of events ends before what it is about.
+pub(super) const INTERRUPTED: &str = "the service shuts down or its tokens have changed; reconnect";
+pub(super) const UNAVAILABLE: &str = "the store is not available; reconnect";
+
 /// Streams the stored lines of a job, study or sweep as they come: its increments or its rows.
 pub async fn stream_lines<T: Resource>(target: Target<T>) -> Result<Response, Problem> {
     let (task, format) = (T::TASK, Format::accepted(&target.headers)?);
     let after = last_event_id(event_name(task), &target.headers)?;
-    let access = &target.service.access;
-    let until = StreamEnd { shutdown: target.service.shutdown.clone(), exchange: access.next_exchange() };
+    let until = StreamEnd::of(&target.service);
     target.standing().await?;
     let Target { service, id, .. } = target;
     let followed = Subscription { service, until, task, id, after };
     Ok(match format {
-        Format::Events => {
-            let as_they_come = [(header::CONTENT_TYPE, EVENT_STREAM), (header::CACHE_CONTROL, "no-cache")];
-            (as_they_come, Body::from_stream(events(followed))).into_response()
+        Format::Events => as_events(events(followed)),
+        // Readers of lines pass over empty ones.
+        Format::Lines => {
+            ([(header::CONTENT_TYPE, NDJSON)], Body::from_stream(kept_alive(lines(followed), "\n"))).into_response()
         }
-        Format::Lines => ([(header::CONTENT_TYPE, NDJSON)], Body::from_stream(lines(followed))).into_response(),
     })
 }
 
@@ -67,17 +70,21 @@ struct Subscription {
 
 /// The signals that end a stream before its job: the service shuts down, or the tokens are replaced, after which a client has
 /// to reconnect with a valid token.
-struct StreamEnd {
+pub(super) struct StreamEnd {
     shutdown: CancellationToken,
     exchange: CancellationToken,
 }
 
 impl StreamEnd {
-    fn is_over(&self) -> bool {
+    pub(super) fn of(service: &Service) -> Self {
+        Self { shutdown: service.shutdown.clone(), exchange: service.access.next_exchange() }
+    }
+
+    pub(super) fn is_over(&self) -> bool {
         self.shutdown.is_cancelled() || self.exchange.is_cancelled()
     }
 
-    async fn over(&self) {
+    pub(super) async fn over(&self) {
         tokio::select! {
             () = self.shutdown.cancelled() => {}
             () = self.exchange.cancelled() => {}
@@ -180,41 +187,57 @@ fn follow(followed: Subscription) -> impl Stream<Item = StreamEvent> {
     }
 }
 
-async fn in_turn<T>(service: &Service, reading: impl Future<Output = T>) -> T {
+pub(super) async fn in_turn<T>(service: &Service, reading: impl Future<Output = T>) -> T {
     // The semaphore is never closed.
     let _turn = service.stream_turns.acquire().await;
     reading.await
 }
 
-fn events(followed: Subscription) -> impl Stream<Item = io::Result<String>> {
+/// Parts of a body, and `waiting` where none has come for a while: readers and what stands between can tell a quiet stream from
+/// a dead one.
+pub(super) fn kept_alive(
+    parts: impl Stream<Item = io::Result<String>>,
+    waiting: &'static str,
+) -> impl Stream<Item = io::Result<String>> {
+    stream! {
+        let mut parts = pin!(parts);
+        loop {
+            match timeout(KEEP_ALIVE, parts.next()).await {
+                Ok(Some(part)) => yield part,
+                Ok(None) => return,
+                Err(_) => yield Ok(waiting.to_owned()),
+            }
+        }
+    }
+}
+
+/// Server-sent events, with comments between them.
+pub(super) fn as_events(parts: impl Stream<Item = String> + Send + 'static) -> Response {
+    let as_they_come = [(header::CONTENT_TYPE, EVENT_STREAM), (header::CACHE_CONTROL, "no-cache")];
+    (as_they_come, Body::from_stream(kept_alive(parts.map(Ok), ": waiting\n\n"))).into_response()
+}
+
+fn events(followed: Subscription) -> impl Stream<Item = String> {
     // The span of a request ends with the head of its answer; later log messages of the stream belong to the span, too.
     let span = tracing::Span::current();
     let (task, id) = (followed.task, followed.id);
-    stream! {
-        let mut happenings = pin!(follow(followed));
-        loop {
-            let happening = match timeout(KEEP_ALIVE, happenings.next()).await {
-                Ok(Some(happening)) => happening,
-                Ok(None) => return,
-                Err(_) => { yield Ok(": waiting\n\n".to_owned()); continue; }
-            };
-            yield Ok(span.in_scope(|| match happening {
-                // One chunk for all lines, as each chunk is sent separately.
-                StreamEvent::Lines(lines) => {
-                    let name = event_name(task);
-                    let event = |line: &Line| format!("event: {name}\nid: {}\ndata: {}\n\n", line.index, line.body);
-                    lines.iter().map(event).collect()
-                }
-                StreamEvent::Ended(written) => last_event(id, written),
-                StreamEvent::Deleted => format!("event: deleted\ndata: {{\"id\":\"{id}\"}}\n\n"),
-                StreamEvent::Interrupted => come_back("the service shuts down or its tokens have changed; reconnect"),
-                StreamEvent::Failed(error) => {
-                    tracing::error!(%error, job = %id, "a stream failed");
-                    come_back("the store is not available; reconnect")
-                }
-            }));
-        }
-    }
+    follow(followed).map(move |happening| {
+        span.in_scope(|| match happening {
+            // One chunk for all lines, as each chunk is sent separately.
+            StreamEvent::Lines(lines) => {
+                let name = event_name(task);
+                let event = |line: &Line| format!("event: {name}\nid: {}\ndata: {}\n\n", line.index, line.body);
+                lines.iter().map(event).collect()
+            }
+            StreamEvent::Ended(written) => last_event(id, written),
+            StreamEvent::Deleted => format!("event: deleted\ndata: {{\"id\":\"{id}\"}}\n\n"),
+            StreamEvent::Interrupted => come_back(INTERRUPTED),
+            StreamEvent::Failed(error) => {
+                tracing::error!(%error, job = %id, "a stream failed");
+                come_back(UNAVAILABLE)
+            }
+        })
+    })
 }
 
 fn last_event(id: Uuid, written: serde_json::Result<String>) -> String {
@@ -227,7 +250,7 @@ fn last_event(id: Uuid, written: serde_json::Result<String>) -> String {
     }
 }
 
-fn come_back(why: &str) -> String {
+pub(super) fn come_back(why: &str) -> String {
     format!("retry: {}\n: {why}\n\n", RETRY.as_millis())
 }
 

@@ -4,7 +4,7 @@ use crate::check::judged::{JudgedIncrement, JudgedReport};
 use crate::result::plan::Plan;
 use crate::result::stop_reason::StopReason;
 use crate::service::http::view::submitted::Submitted;
-use crate::service::store::JobRecord;
+use crate::service::store::{self, JobRecord};
 use serde::Serialize;
 use serde_json::value::RawValue;
 use utoipa::ToSchema;
@@ -91,7 +91,7 @@ pub struct Exploration {
 
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Progress {
-    /// Increments up to the last one that is stored, those not recorded among them.
+    /// Increments after the first point, up to the last one that is stored, those not recorded among them.
     pub increments: u64,
     /// Index of the last one that is stored; null before the first.
     pub last_index: Option<u64>,
@@ -123,7 +123,7 @@ impl TryFrom<JobRecord> for Job {
         Ok(Self {
             submitted: Submitted::from(&record),
             progress: Progress {
-                increments: record.last_index.map_or(0, |index| index + 1),
+                increments: record.lines_done(),
                 last_index: record.last_index,
                 max_increments: record.max_increments,
                 locating_bifurcation: false,
@@ -131,12 +131,8 @@ impl TryFrom<JobRecord> for Job {
             plan: RawValue::from_string(record.plan)?,
             stop_reason: record.stop_reason,
             report: record.report.map(RawValue::from_string).transpose()?,
-            parent: record.parent.map(|parent| Parent {
-                job: parent.job,
-                increment: parent.increment,
-                direction: parent.direction,
-            }),
-            sweep: record.run.map(|run| RunOf { sweep: run.sweep, run: run.run }),
+            parent: record.parent.map(Parent::from),
+            sweep: record.run.map(RunOf::from),
             children: record.children,
             explore: record.membership.map(|member| Exploration {
                 family: member.family,
@@ -157,6 +153,18 @@ impl TryFrom<JobRecord> for Job {
                 itself,
             },
         })
+    }
+}
+
+impl From<store::Parent> for Parent {
+    fn from(store::Parent { job, increment, direction }: store::Parent) -> Self {
+        Self { job, increment, direction }
+    }
+}
+
+impl From<store::RunOf> for RunOf {
+    fn from(store::RunOf { sweep, run }: store::RunOf) -> Self {
+        Self { sweep, run }
     }
 }
 

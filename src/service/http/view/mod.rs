@@ -1,5 +1,6 @@
 //! The JSON answers of version 1, and how they are made from the stored records.
 
+pub mod change;
 pub mod job;
 pub mod probe;
 pub mod scene;

@@ -64,7 +64,7 @@ impl TryFrom<JobRecord> for Study {
         let itself = address(record.id);
         Ok(Self {
             submitted: Submitted::from(&record),
-            progress: StudyProgress { runs: record.last_index.map_or(0, |index| index + 1), of: record.max_increments },
+            progress: StudyProgress { runs: record.lines_done(), of: record.max_increments },
             plan: RawValue::from_string(record.plan)?,
             links: StudyLinks {
                 stream: format!("{itself}/stream"),

@@ -17,6 +17,8 @@ pub struct Submitted {
     pub status: Status,
     /// Why it failed, or which limit of this service stopped it.
     pub error: Option<String>,
+    /// What a reader should know of a job that has not ended: that it has lost its worker, and what happens next.
+    pub note: Option<String>,
     /// A cancel was asked for; it ends within one iteration.
     pub cancel_requested: bool,
     /// Times it was started.
@@ -43,6 +45,7 @@ impl From<&JobRecord> for Submitted {
             name: record.name.clone(),
             status: record.status,
             error: record.error.clone(),
+            note: lost_worker(record),
             cancel_requested: record.cancel_requested,
             attempt: record.attempt,
             losses: record.losses,
@@ -53,4 +56,23 @@ impl From<&JobRecord> for Submitted {
             ended_at: record.ended_at,
         }
     }
+}
+
+/// What is said of a job that goes on after its worker was lost.
+fn lost_worker(record: &JobRecord) -> Option<String> {
+    let next = match record.status {
+        Status::Queued => "it waits for another worker",
+        Status::Running => "another worker has it now",
+        Status::Completed | Status::Stopped | Status::Cancelled | Status::Failed => return None,
+    };
+    let times = match record.losses {
+        0 => return None,
+        1 => "its worker was lost".to_owned(),
+        more => format!("its workers were lost, {more} in a row"),
+    };
+    let from = match record.last_index {
+        Some(index) => format!("goes on after increment {index}, the last one stored"),
+        None => "begins anew, as nothing was stored".to_owned(),
+    };
+    Some(format!("{times}: the process ended, or did not renew its lease in time; {next}, and it {from}"))
 }

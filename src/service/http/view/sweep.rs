@@ -33,6 +33,10 @@ pub struct Variation {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<IndexMap<String, Response>>)]
     responses: Option<Box<RawValue>>,
+    /// Further runs at most, where the first response changes most; absent where none are asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    refine: Option<u64>,
 }
 
 /// A sweep as it is listed: what it varies is shortened.
@@ -50,7 +54,7 @@ pub struct ListedSweep {
 pub struct SweepProgress {
     /// Runs that have ended.
     pub ended: u64,
-    /// Runs in all.
+    /// Runs in all, those among them that a refinement has added so far.
     pub of: u64,
 }
 
@@ -124,7 +128,7 @@ impl TryFrom<JobRecord> for ListedSweep {
 
 impl SweepProgress {
     fn of(record: &JobRecord) -> Self {
-        Self { ended: record.last_index.map_or(0, |index| index + 1), of: record.max_increments }
+        Self { ended: record.lines_done(), of: record.max_increments }
     }
 }
 

@@ -23,13 +23,13 @@ impl Jobs {
         let client = posted.client.clone();
         let read = |text: Vec<u8>| {
             Whole::of(move |_: &CheckContext<'_>| {
-                decode::follow(&text).map_err(|errors| wrong_input(&text, errors, JobsError::Follow))
+                decode::follow(&text).map_err(|errors| wrong_input(&text, errors, JobsError::Input))
             })
         };
         let (asked, _) = self.checks.run(posted, read).await?;
         let limits = self.settings.limits;
         if let Some(past) = asked.max_increments.and_then(|most| limits.past_increments("/max_increments", most)) {
-            return Err(JobsError::Follow(InputErrors(vec![past])));
+            return Err(JobsError::Input(InputErrors(vec![past])));
         }
         let parent = Parent { job: id, increment: asked.increment, direction: asked.direction };
         let owner = caller.owner().map(str::to_owned);

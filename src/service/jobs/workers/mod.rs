@@ -2,6 +2,7 @@
 
 pub mod batch;
 pub mod explore;
+pub(crate) mod refinement;
 pub mod responses;
 pub mod retention;
 pub mod worker;

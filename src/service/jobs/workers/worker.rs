@@ -9,7 +9,7 @@ use crate::service::jobs::solving::running;
 use crate::service::jobs::solving::solve::{self, Solve};
 use crate::service::jobs::solving::solve_output::SolveEnd;
 use crate::service::jobs::workers::batch::{self, Drained};
-use crate::service::jobs::workers::responses;
+use crate::service::jobs::workers::{refinement, responses};
 use crate::service::metrics::Write;
 use crate::service::store::{Batch, Claim, Ending, Lease, LeaseAnswer, Status, StoreError, Task};
 use crate::studies::error_against_time;
@@ -75,12 +75,37 @@ async fn run(jobs: &Jobs, claim: Claim, shutdown: &CancellationToken) {
             if claim.explores {
                 crate::service::jobs::workers::explore::queue(jobs).await;
             }
+            refinement::queue(jobs).await;
         }
         Ok(Finished::Released) => tracing::info!("returned to the queue"),
-        Ok(Finished::Lost) => tracing::info!("deleted, or claimed by another worker"),
+        Ok(Finished::Lost) => tell_loss(jobs, &claim.lease).await,
         // The end cannot be stored now: the lease expires and the job is tried again.
         Err(error) => tracing::error!(%error, source = ?std::error::Error::source(&error), "the end was not stored"),
     }
+}
+
+/// Logs what has become of a job that this worker may no longer write to.
+async fn tell_loss(jobs: &Jobs, lease: &Lease) {
+    let lasts = jobs.settings.lease;
+    let job = match jobs.store.job(lease.job).await {
+        Ok(Some(job)) => job,
+        Ok(None) => return tracing::info!("the job was deleted while it ran"),
+        Err(error) => return tracing::warn!(%error, "the lease was lost: nothing could be stored within {lasts:?}"),
+    };
+    let now = match job.status {
+        Status::Cancelled => {
+            return tracing::info!("the job was cancelled; what this worker had not stored is dropped");
+        }
+        Status::Running if job.attempt > lease.attempt => "another worker has the job and goes on after what is stored",
+        Status::Running => "the job goes back to the queue, and then on after what is stored",
+        Status::Queued => "the job waits in the queue, and then goes on after what is stored",
+        Status::Completed | Status::Stopped => "another worker has brought the job to its end",
+        Status::Failed => "the job has lost too many workers and failed",
+    };
+    tracing::warn!(
+        now,
+        "the lease was lost: it was not renewed within {lasts:?}, by this process or its database being held up"
+    );
 }
 
 enum Finished {

@@ -1,7 +1,7 @@
 //! The workers of a process, and the tasks that reclaim the jobs of lost workers and delete old jobs.
 
 use crate::service::jobs::Jobs;
-use crate::service::jobs::workers::{retention, worker};
+use crate::service::jobs::workers::{refinement, retention, worker};
 use crate::service::store::contract::interface::Store;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -116,6 +116,7 @@ async fn sweep(jobs: Jobs, shutdown: CancellationToken) {
         }
         // Alternatives of jobs that ended without their worker: cancelled in the queue, deleted, or stored just before a shutdown.
         crate::service::jobs::workers::explore::queue(&jobs).await;
+        refinement::queue(&jobs).await;
         tokio::select! {
             () = shutdown.cancelled() => return,
             () = tokio::time::sleep(jobs.settings.lease / 4) => {}

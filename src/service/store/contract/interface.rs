@@ -2,8 +2,8 @@
 
 use crate::service::store::contract::error::Result;
 use crate::service::store::contract::record::{
-    Batch, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed, NewFollower, NewJob, NewSweep,
-    Origin, Page, Retried, Standing, Status, Submitted,
+    Batch, Claim, Ending, FeedPage, FeedPosition, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed,
+    NewFollower, NewJob, NewSweep, Origin, Page, Retried, Standing, Status, Submitted, SweepRefinement,
 };
 use crate::service::store::contract::signals::Change;
 use async_trait::async_trait;
@@ -19,6 +19,13 @@ pub trait Store: Send + Sync + 'static {
 
     /// Stores a sweep with all of its runs, which are `queued`, or finds the one that came with the same idempotency key.
     async fn submit_sweep(&self, sweep: NewSweep) -> Result<Submitted>;
+
+    /// Sweeps that may have further runs, and whose runs so far have all ended; a few of them.
+    async fn refinable_sweeps(&self) -> Result<Vec<Uuid>>;
+
+    /// Queues further runs of a sweep, or ends the sweep where there are none. `false`: somebody else has done so, or it was
+    /// cancelled or deleted.
+    async fn refine_sweep(&self, refinement: SweepRefinement) -> Result<bool>;
 
     /// Cancels the runs of a sweep: waiting runs at once; running ones are marked, and their ids are answered.
     async fn cancel_sweep(&self, id: Uuid) -> Result<Vec<Uuid>>;
@@ -42,6 +49,10 @@ pub trait Store: Send + Sync + 'static {
     /// order of queueing, each when it and all before it have ended, so that the same jobs are queued in the same order
     /// whatever the number of workers.
     async fn explore(&self) -> Result<u64>;
+
+    /// What has changed after a position, of one owner or of all: at most `most` changes, in order. `after` is the position of a
+    /// change or the end of an earlier page.
+    async fn changes(&self, owner: Option<&str>, after: Option<FeedPosition>, most: u32) -> Result<FeedPage>;
 
     /// Jobs of a task, newest first, in a short form. The memory of a page is bounded, however large the jobs are.
     async fn jobs(&self, filter: ListFilter) -> Result<Listed>;
@@ -104,6 +115,9 @@ pub trait Store: Send + Sync + 'static {
     /// A signal that changes whenever this process has stored something of the job, and usually when another process has.
     /// Subscribe before reading: then no change of this process is missed.
     fn job_changes(&self, id: Uuid) -> watch::Receiver<Change>;
+
+    /// A signal that changes whenever this process has stored something of any job, and usually when another process has.
+    fn any_change(&self) -> watch::Receiver<u64>;
 
     /// A signal that changes whenever this process has queued a job, and usually when another process has.
     fn queue_changes(&self) -> watch::Receiver<u64>;

@@ -104,6 +104,21 @@ pub struct NewJob {
 pub struct NewSweep {
     pub whole: NewJob,
     pub runs: Vec<NewRun>,
+    /// Further runs that may be added.
+    pub refine: u64,
+}
+
+/// Further runs of a sweep whose runs have all ended, or its end.
+#[derive(Debug, Clone)]
+pub struct SweepRefinement {
+    pub sweep: Uuid,
+    /// The number of runs so far.
+    pub before: u64,
+    /// What is varied with them, JSON, and its short form.
+    pub plan: String,
+    pub summary: Option<String>,
+    /// None: the sweep ends.
+    pub runs: Vec<NewRun>,
 }
 
 /// A run of a sweep to be queued.
@@ -266,6 +281,14 @@ pub struct JobRecord {
 }
 
 impl JobRecord {
+    /// Of a path, increments after the point of index 0; of others, rows.
+    pub fn lines_done(&self) -> u64 {
+        match self.task {
+            Task::Path => self.last_index.unwrap_or(0),
+            Task::Study | Task::Sweep => self.last_index.map_or(0, |index| index + 1),
+        }
+    }
+
     /// Bytes of the texts of the record.
     pub fn bytes(&self) -> usize {
         let texts = [&self.owner, &self.name, &self.report, &self.stop_reason, &self.error];
@@ -306,6 +329,34 @@ pub struct Listed {
     pub jobs: Vec<JobRecord>,
     /// There are further jobs.
     pub more: bool,
+}
+
+/// A place in the order of changes: the number of a change, and the job that it is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct FeedPosition {
+    pub change: u64,
+    pub id: Uuid,
+}
+
+/// A change of a job, study or sweep.
+#[derive(Debug, Clone)]
+pub struct FeedEntry {
+    pub at: FeedPosition,
+    pub task: Task,
+    /// As it is now, without its plan and report; `None`: it was deleted.
+    pub job: Option<JobRecord>,
+}
+
+/// Changes in order.
+#[derive(Debug, Clone)]
+pub struct FeedPage {
+    pub entries: Vec<FeedEntry>,
+    /// Where the next page begins.
+    pub end: FeedPosition,
+    /// There are further changes by now.
+    pub more: bool,
+    /// There was no position, or one of another database: what changed before the end is not told.
+    pub begins: bool,
 }
 
 /// How much to read at once.

@@ -16,6 +16,8 @@ use uuid::Uuid;
 pub struct Signals {
     jobs: Mutex<HashMap<Uuid, Heard>>,
     queue: watch::Sender<u64>,
+    /// Changes whenever anything does.
+    any: watch::Sender<u64>,
     /// The announcements to other processes.
     announcements: Option<Arc<Announcements>>,
 }
@@ -63,7 +65,7 @@ impl Latest {
 
 impl Default for Signals {
     fn default() -> Self {
-        Self { jobs: Mutex::default(), queue: watch::Sender::new(0), announcements: None }
+        Self { jobs: Mutex::default(), queue: watch::Sender::new(0), any: watch::Sender::new(0), announcements: None }
     }
 }
 
@@ -80,6 +82,14 @@ impl Signals {
         jobs.entry(id).or_default().changes.subscribe()
     }
 
+    pub fn any_change(&self) -> watch::Receiver<u64> {
+        self.any.subscribe()
+    }
+
+    fn something_changed(&self) {
+        self.any.send_modify(|count| *count += 1);
+    }
+
     pub fn queue_changes(&self) -> watch::Receiver<u64> {
         self.queue.subscribe()
     }
@@ -91,6 +101,7 @@ impl Signals {
 
     /// Another process has changed something of a job.
     pub fn job_changed_elsewhere(&self, id: Uuid) {
+        self.something_changed();
         if let Some(heard) = self.jobs().get(&id) {
             heard.changes.send_replace(Change::default());
         }
@@ -99,6 +110,7 @@ impl Signals {
     /// A job was claimed, with lines up to the given index.
     pub fn job_claimed(&self, lease: &Lease, last_index: Option<u64>) {
         self.announce_job(lease.job);
+        self.something_changed();
         if let Some(heard) = self.jobs().get_mut(&lease.job) {
             heard.holder = Some(Holder { lease: lease.clone(), last_index });
             heard.changes.send_replace(Change::default());
@@ -117,6 +129,7 @@ impl Signals {
 
     fn stored(&self, lease: &Lease, lines: &[Line], ended: bool) {
         self.announce_job(lease.job);
+        self.something_changed();
         let mut jobs = self.jobs();
         let Some(heard) = jobs.get_mut(&lease.job) else { return };
         let Some(last) = lines.last() else {
@@ -140,6 +153,7 @@ impl Signals {
     /// Another process has put a job into the queue.
     pub fn queue_changed_elsewhere(&self) {
         self.queue.send_modify(|count| *count += 1);
+        self.something_changed();
     }
 
     /// Anything may have changed in other processes.

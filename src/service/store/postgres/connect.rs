@@ -18,6 +18,8 @@ const MIGRATIONS: &[MigrationFile] = migration_files![
     "0004_turns",
     "0005_counted_losses",
     "0006_responses",
+    "0007_changes",
+    "0008_refinement",
 ];
 
 /// In the format of `server_version_num`.

@@ -25,9 +25,12 @@ impl Dialect for Postgres {
                                 sum(octet_length(body)) OVER (ORDER BY increment_index) - octet_length(body) AS before \
                                 FROM increments WHERE job = $1 AND increment_index > $2 ORDER BY increment_index LIMIT $3) \
                                 AS page WHERE before < $4 ORDER BY increment_index";
-    /// Sums up the tallies, except for rows that another process sums up at the moment.
+    const SETTLED: &'static str = "SELECT txid_snapshot_xmin(txid_current_snapshot()) AS settled";
+    /// Sums up the tallies, except for rows that another process sums up at the moment; deletions are told for a day.
     const SWEEP: Option<&'static str> = Some(
-        "WITH told AS (DELETE FROM tallies WHERE (SELECT count(*) FROM tallies) > 100 RETURNING status, jobs) \
+        "WITH old AS (DELETE FROM deletions WHERE deleted_at < \
+         CAST(extract(epoch FROM statement_timestamp()) * 1000 AS BIGINT) - 86400000), \
+         told AS (DELETE FROM tallies WHERE (SELECT count(*) FROM tallies) > 100 RETURNING status, jobs) \
          INSERT INTO tallies (status, jobs) SELECT status, sum(jobs) FROM told GROUP BY status",
     );
 
@@ -71,11 +74,12 @@ impl Dialect for Postgres {
         let insert = "INSERT INTO jobs (id, name, status, priority, request, plan, max_increments, max_attempts, \
                       created_at, updated_at, task, owner, sweep, sweep_run, sweep_values, class, turn, asked) \
                       SELECT given.id, given.name, 'queued', $1, given.request, given.plan, given.increments, $2, \
-                      {now}, {now}, 'path', $3, $4, given.number, given.chosen, 2, $12 + given.number, given.asked \
+                      {now}, {now}, 'path', $3, $4, given.number, given.chosen, 2, $12 + given.number - $14, given.asked \
                       FROM unnest($5::uuid[], $6::text[], $7::text[], $8::text[], $9::bigint[], $10::bigint[], $11::text[], $13::text[]) \
                       AS given (id, name, request, plan, increments, number, chosen, asked)";
         for (chunk, new) in (0_i64..).zip(runs.runs.chunks(ROWS_A_STATEMENT)) {
-            let first = chunk * ROWS_A_STATEMENT as i64;
+            let before = i64::try_from(runs.first).unwrap_or(i64::MAX / 2);
+            let first = before + chunk * ROWS_A_STATEMENT as i64;
             sqlx::query(Self::said(insert))
                 .bind(runs.priority)
                 .bind(runs.max_attempts)
@@ -90,6 +94,7 @@ impl Dialect for Postgres {
                 .bind(new.iter().map(|run| run.values.as_str()).collect::<Vec<_>>())
                 .bind(i64::try_from(runs.turn).unwrap_or(i64::MAX / 2))
                 .bind(new.iter().map(|run| run.asked.as_deref()).collect::<Vec<_>>())
+                .bind(before)
                 .execute(&mut *connection)
                 .await?;
         }

@@ -133,8 +133,8 @@ const RECLAIM: &str = concat!(
     " < max_attempts THEN 'queued' ELSE 'failed' END, stop_reason = CASE WHEN cancel_requested <> 0 THEN 'cancelled' END, \
      error = CASE WHEN cancel_requested = 0 AND counted_losses + ",
     counts!(),
-    " >= max_attempts THEN 'the worker was lost ' || (losses + 1) || ' times in a row, ' || max_attempts || ' of them with no other job, nothing stored between: the process that \
-works on the job ends, or does not answer in time' END, \
+    " >= max_attempts THEN 'the worker was lost ' || (losses + 1) || ' times in a row, ' || max_attempts || ' of them with no other job, nothing stored between: its process \
+ended (killed, out of memory, or a defect) or did not renew its lease in time (see --lease); what is stored stands, and a retry goes on from there' END, \
      ended_at = CASE WHEN cancel_requested <> 0 OR counted_losses + ",
     counts!(),
     " >= max_attempts THEN {now} END, worker = NULL, lease_until = NULL, updated_at = {now} \

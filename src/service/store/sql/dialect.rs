@@ -82,7 +82,8 @@ pub(crate) struct Runs<'r> {
     pub sweep: Uuid,
     pub priority: i64,
     pub max_attempts: i64,
-    /// The number of the first run; the others have the following numbers.
+    /// The first run's place in the sweep, and its number in the queue; the others have the following ones.
+    pub first: u64,
     pub turn: u64,
     pub owner: Option<&'r str>,
     pub runs: &'r [NewRun],
@@ -119,6 +120,8 @@ pub(crate) trait Dialect: Database<Row: Cells> {
     const IN_TURN: Option<&'static str>;
     /// Increments of job `$1` past `$2`, in order: at most `$3`, and few past `$4` bytes.
     const PAGE: &'static str;
+    /// The number, `settled`, below which no change can appear any more.
+    const SETTLED: &'static str;
     /// The statements of the regular upkeep.
     const SWEEP: Option<&'static str>;
 

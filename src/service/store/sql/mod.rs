@@ -2,10 +2,12 @@
 //!
 //! [`claims`] is the queue, [`turns`] its order, [`leases`] the rights of its workers, [`increments`] what workers append,
 //! [`jobs`] the operations of clients, [`followers`] and [`families`] jobs that continue others, [`sweeps`] groups of jobs,
+//! [`changes`] the feed of what has changed,
 //! [`migrations`] the schema.
 //! [`store`] implements [`Store`](crate::service::store::contract::interface::Store) with them, and [`rows`] reads records.
 //! Called by the engines, of which it only knows [`Dialect`](dialect::Dialect) and [`Engine`](engine::Engine).
 
+pub(crate) mod changes;
 pub(crate) mod claims;
 pub(crate) mod dialect;
 pub(crate) mod engine;

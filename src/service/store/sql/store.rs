@@ -3,10 +3,11 @@
 use crate::service::store::contract::error::Result;
 use crate::service::store::contract::interface::Store;
 use crate::service::store::sql::engine::Engine;
-use crate::service::store::sql::{claims, families, followers, increments, jobs, leases, sweeps, turns};
+use crate::service::store::sql::{changes, claims, families, followers, increments, jobs, leases, sweeps, turns};
 use crate::service::store::{
-    Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed, NewFollower, NewJob,
-    NewSweep, Origin, Page, Retried, Standing, Status, StoreError, Submitted,
+    Batch, Change, Claim, Ending, FeedPage, FeedPosition, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter,
+    Listed, NewFollower, NewJob, NewSweep, Origin, Page, Retried, Standing, Status, StoreError, Submitted,
+    SweepRefinement,
 };
 use async_trait::async_trait;
 use std::collections::HashSet;
@@ -94,6 +95,14 @@ impl<E: Engine> Store for SqlStore<E> {
         submitted
     }
 
+    async fn refinable_sweeps(&self) -> Result<Vec<Uuid>> {
+        self.call(sweeps::refinable(&self.engine)).await
+    }
+
+    async fn refine_sweep(&self, refinement: SweepRefinement) -> Result<bool> {
+        self.begin(sweeps::refine(&self.engine, refinement)).await
+    }
+
     async fn cancel_sweep(&self, id: Uuid) -> Result<Vec<Uuid>> {
         let at_work = self.at_length(sweeps::mark_cancelled(&self.engine, id)).await?;
         // Runs that are left after a crash in between are cancelled by the worker that claims them.
@@ -126,6 +135,10 @@ impl<E: Engine> Store for SqlStore<E> {
 
     async fn explore(&self) -> Result<u64> {
         self.begin(families::explore(&self.engine)).await
+    }
+
+    async fn changes(&self, owner: Option<&str>, after: Option<FeedPosition>, most: u32) -> Result<FeedPage> {
+        self.call(changes::read(&self.engine, owner, after, most)).await
     }
 
     async fn jobs(&self, filter: ListFilter) -> Result<Listed> {
@@ -208,6 +221,10 @@ impl<E: Engine> Store for SqlStore<E> {
 
     fn job_changes(&self, id: Uuid) -> watch::Receiver<Change> {
         self.engine.signals().job_changes(id)
+    }
+
+    fn any_change(&self) -> watch::Receiver<u64> {
+        self.engine.signals().any_change()
     }
 
     fn queue_changes(&self) -> watch::Receiver<u64> {

@@ -28,7 +28,11 @@ impl Dialect for Sqlite {
                                 FROM (SELECT increment_index, octet_length(body) AS bytes FROM increments WHERE job = $1 \
                                 AND increment_index > $2 ORDER BY increment_index LIMIT $3)) WHERE before < $4) \
                                 ORDER BY increment_index LIMIT $3";
-    const SWEEP: Option<&'static str> = None;
+    // Writers take turns, so that changes appear in the order of their numbers.
+    const SETTLED: &'static str = "SELECT latest + 1 AS settled FROM change_count";
+    /// Deletions are told for a day.
+    const SWEEP: Option<&'static str> =
+        Some("DELETE FROM deletions WHERE deleted_at < CAST(unixepoch('now', 'subsec') * 1000 AS INTEGER) - 86400000");
 
     speaks!();
 
@@ -77,7 +81,7 @@ impl Dialect for Sqlite {
                     runs.max_attempts,
                     runs.owner,
                     runs.sweep,
-                    number,
+                    runs.first + number,
                     &run.values,
                     runs.turn + number,
                     &run.asked,

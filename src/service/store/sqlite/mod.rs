@@ -39,6 +39,8 @@ const MIGRATIONS: &[MigrationFile] = migration_files![
     "0010_turns",
     "0011_counted_losses",
     "0012_responses",
+    "0013_changes",
+    "0014_refinement",
 ];
 
 const READERS: u32 = 4;
