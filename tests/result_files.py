@@ -172,11 +172,17 @@ def check_piece(path, request, row):
         Check.equal("cell", points, [nodes.index(node) for node in element["nodes"]])
     points = grid.GetPointData()
     nan = [math.nan] * 3
+    dimension = model["dimension"]
 
     def vectors(values):
-        return numpy.array([in_space(values[node]) if node in values else nan for node in nodes])
+        return numpy.array([in_space(values[node][:dimension]) if node in values else nan for node in nodes])
 
     Check.equal("displacement", vtk_to_numpy(points.GetArray("displacement")), vectors(row["displacements"]))
+    names = points.GetAbstractArray("node")
+    Check.equal("node", [names.GetValue(place) for place in range(len(nodes))], nodes)
+    if any(element["kind"] in ("beam", "rotational_spring") for element in model["elements"]):
+        turned = [(row["displacements"].get(node) or [0, 0, math.nan])[2:3] or [math.nan] for node in nodes]
+        Check.equal("rotation", vtk_to_numpy(points.GetArray("rotation")), numpy.array(turned, dtype=float)[:, 0])
     if row.get("supports"):
         Check.equal("support_reaction", vtk_to_numpy(points.GetArray("support_reaction")), vectors(row["supports"]))
     status = numpy.full(len(nodes), 255)
@@ -251,6 +257,16 @@ def check_parquet(open_table, request, rows):
     Check.equal("index", column(elements, "index"), [index for index, _ in expected])
     for name in ("element", "name", "axial_force"):
         Check.equal(name, column(elements, name), [state.get(name) for _, state in expected])
+    if dimension == 2:
+        def third(vector):
+            return vector[2] if len(vector) > 2 else None
+
+        rotations = [third(vector) for row in rows for vector in row["displacements"].values()]
+        Check.equal("rotation", column(nodes, "rotation"), rotations)
+        for place, end in enumerate(("first", "last")):
+            for name, key in (("beam_axial_force", "axial_force"), ("shear_force",) * 2, ("bending_moment",) * 2):
+                values = [state["ends"][place][key] if "ends" in state else None for _, state in expected]
+                Check.equal(name, column(elements, f"{name}_at_{end}_node"), values)
     for place, axis in enumerate(axes):
         values = [state["force"][place] if "force" in state else None for _, state in expected]
         Check.equal("force", column(elements, f"force_{axis}"), values)
@@ -363,6 +379,8 @@ def main():
             measure_times(arguments.program, folder)
             return
         models = {"tower": tower(), "arch": arch(30), "springs": spring_row()}
+        beams = pathlib.Path(__file__).parent / "solver/models/arch-on-rough-floor.json"
+        models["beams"] = json.loads(beams.read_text())
         for name, request in models.items():
             check_files(arguments.program, folder, name, request)
         check_http(arguments.program, folder, models)
