@@ -49,7 +49,9 @@ export class ElementDrawing {
 
   /** Straight from node to node: the shape between them is not recorded. */
   beam(places, axial, named, ends) {
-    const moments = ends ? [`bending moments ${components(ends.map((end) => end.bending_moment), "")} at its ends`] : [];
+    const of = (end) => (end.bending_moments ? [end.torsional_moment, ...end.bending_moments] : [end.bending_moment]);
+    const what = ends?.[0].bending_moments ? "torsional and bending moments" : "bending moments";
+    const moments = ends ? [`${what} ${components(ends.flatMap(of), "")} at its ends`] : [];
     for (let place = 1; place < places.length; place += 1) {
       this.bar(places.slice(place - 1, place + 1), axial, [...named, ...moments]);
     }
