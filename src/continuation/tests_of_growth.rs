@@ -52,7 +52,7 @@ fn rotated(angle: f64, a: Plane) -> Plane {
 /// ```text
 /// W = ½ k Σ |u_o - u_m - (R(θ_m) - I) X_o|² + ½ κ Σ (θ_o - θ_m)²
 /// ```
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Lever {
     nodes: [usize; 3],
     /// From the first node to each of the others.

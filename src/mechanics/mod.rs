@@ -5,6 +5,7 @@
 //! | [`structure`] | unknowns, elements, internal forces and tangent |
 //! | [`contact`] | a node against an obstacle: gap, frame, reaction, modes |
 //! | [`problem`] | states and rates, the structure under its loads, energies, the laws of contact as a residual |
+//! | [`rotation`] | rotations in space |
 //! | [`multi_contact`] | nodes in contact with several obstacles at once |
 //! | `equations` | the equations of one contact mode, their matrix, and the equation that closes them |
 //!
@@ -14,4 +15,5 @@ pub mod contact;
 pub(crate) mod equations;
 pub mod multi_contact;
 pub mod problem;
+pub mod rotation;
 pub mod structure;

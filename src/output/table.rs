@@ -52,19 +52,35 @@ struct NodeColumns {
 
 impl NodeColumns {
     fn names(&self, what: &str, dimension: usize) -> impl Iterator<Item = String> {
-        let rotation = self.has_rotation.then_some("rz");
-        let axes = AXES.into_iter().take(dimension).chain(rotation);
+        let rotations: &[&str] = if dimension == 2 { &["rz"] } else { &["rx", "ry", "rz"] };
+        let rotations = rotations.iter().copied().take(self.rotations(dimension));
+        let axes = AXES.into_iter().take(dimension).chain(rotations);
         axes.map(move |axis| format!("{}{what}.{axis}", self.name))
     }
 
     fn count(&self, dimension: usize) -> usize {
-        dimension + usize::from(self.has_rotation)
+        dimension + self.rotations(dimension)
+    }
+
+    fn rotations(&self, dimension: usize) -> usize {
+        match (self.has_rotation, dimension) {
+            (false, _) => 0,
+            (true, 2) => 1,
+            (true, _) => 3,
+        }
     }
 }
 
 /// Names of a beam's ends in columns, and of what they have.
 const ENDS: [&str; 2] = ["start", "end"];
 const AT_END: [&str; 3] = ["axial_force", "shear_force", "bending_moment"];
+const AT_END_IN_SPACE: [&str; 6] =
+    ["axial_force", "shear_force.1", "shear_force.2", "torsional_moment", "bending_moment.1", "bending_moment.2"];
+
+/// What a beam's end has, by the dimension of the space.
+pub(crate) fn at_end(dimension: usize) -> &'static [&'static str] {
+    if dimension == 2 { &AT_END } else { &AT_END_IN_SPACE }
+}
 
 #[derive(Debug, Clone)]
 struct ContactColumns {
@@ -133,9 +149,9 @@ impl Table {
             match forces {
                 ForceColumns::Axial => names.push(format!("elements/{label}.axial_force")),
                 ForceColumns::Vector => names.extend(axes().map(|axis| format!("elements/{label}.force.{axis}"))),
-                ForceColumns::Ends => names.extend(
-                    ENDS.iter().flat_map(|end| AT_END.iter().map(move |what| format!("elements/{label}.{end}.{what}"))),
-                ),
+                ForceColumns::Ends => names.extend(ENDS.iter().flat_map(|end| {
+                    at_end(self.dimension).iter().map(move |what| format!("elements/{label}.{end}.{what}"))
+                })),
                 ForceColumns::Moment => names.push(format!("elements/{label}.moment")),
             }
         }
@@ -209,9 +225,8 @@ impl Table {
                 ForceColumns::Ends => {
                     let ends = state.and_then(|state| state.ends);
                     for place in 0..ENDS.len() {
-                        let values = ends
-                            .map(|ends| [ends[place].axial_force, ends[place].shear_force, ends[place].bending_moment]);
-                        line.numbers(values.as_ref().map_or(&[], <[f64; 3]>::as_slice), AT_END.len());
+                        let values: Vec<f64> = ends.iter().flat_map(|ends| ends[place].values()).collect();
+                        line.numbers(&values, at_end(self.dimension).len());
                     }
                 }
                 ForceColumns::Moment => line.optional(state.and_then(|state| state.moment)),

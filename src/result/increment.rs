@@ -119,17 +119,59 @@ pub struct ElementState {
     pub moment: Option<f64>,
 }
 
-/// The force in a beam at one of its ends, in the axes of the deformed cross-section: `t` along the beam, `n` a quarter
-/// turn counter-clockwise from it. Forces are those on the part of the beam before the cross-section.
+/// The force in a beam at one of its ends, in the axes of the deformed cross-section. In the plane: `t` along the beam,
+/// `n` a quarter turn counter-clockwise from it. In space: `t`, axis 1 and axis 2 of the beam. Forces and moments are
+/// those on the part of the beam before the cross-section.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct BeamEndForces {
     /// Along `t`, tension positive.
     pub axial_force: f64,
-    /// Along `n`.
-    pub shear_force: f64,
-    /// EI times the change of curvature: positive where the rotation grows along the beam.
-    pub bending_moment: f64,
+    /// In the plane, along `n`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shear_force: Option<f64>,
+    /// In the plane, EI times the change of curvature: positive where the rotation grows along the beam.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bending_moment: Option<f64>,
+    /// In space, along axes 1 and 2.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shear_forces: Option<[f64; 2]>,
+    /// In space, about `t`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub torsional_moment: Option<f64>,
+    /// In space, about axes 1 and 2.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bending_moments: Option<[f64; 2]>,
+}
+
+impl BeamEndForces {
+    /// Forces in the plane.
+    pub(crate) fn in_plane(axial_force: f64, shear_force: f64, bending_moment: f64) -> Self {
+        Self { axial_force, shear_force: Some(shear_force), bending_moment: Some(bending_moment), ..Self::default() }
+    }
+
+    /// Forces in space.
+    pub(crate) fn in_space(
+        axial_force: f64,
+        shear_forces: [f64; 2],
+        torsional_moment: f64,
+        bending_moments: [f64; 2],
+    ) -> Self {
+        Self {
+            axial_force,
+            shear_forces: Some(shear_forces),
+            torsional_moment: Some(torsional_moment),
+            bending_moments: Some(bending_moments),
+            ..Self::default()
+        }
+    }
+
+    /// Forces, then moments, each in the order of the axes: three numbers in the plane, six in space.
+    pub(crate) fn values(&self) -> impl Iterator<Item = f64> {
+        let forces = self.shear_force.into_iter().chain(self.shear_forces.into_iter().flatten());
+        let moments = self.bending_moment.into_iter().chain(self.torsional_moment);
+        std::iter::once(self.axial_force).chain(forces).chain(moments).chain(self.bending_moments.into_iter().flatten())
+    }
 }
 
 /// Status of a contact.

@@ -1,7 +1,7 @@
 //! The same request said in another way: in other units, about other axes, in another order.
 
 use arcslip::model::JobRequest;
-use arcslip::model::request::{Element, Obstacle};
+use arcslip::model::request::{BendingStiffness, Element, Obstacle};
 
 /// Rows of an orthogonal matrix.
 pub type Axes = [[f64; 3]; 3];
@@ -20,9 +20,14 @@ pub fn in_units(mut request: JobRequest, length: f64, force: f64) -> JobRequest 
                 rest_length.iter_mut().for_each(|rest| *rest *= length);
             }
             Element::Spring { stiffness, .. } => stiffness.iter_mut().for_each(|row| scale(row, force / length)),
-            Element::Beam { axial_stiffness, bending_stiffness, shear_stiffness, .. } => {
+            Element::Beam { axial_stiffness, bending_stiffness, torsional_stiffness, shear_stiffness, .. } => {
                 *axial_stiffness *= force;
-                *bending_stiffness *= force * length * length;
+                let by = force * length * length;
+                *bending_stiffness = match *bending_stiffness {
+                    BendingStiffness::Plane(bending) => BendingStiffness::Plane(bending * by),
+                    BendingStiffness::Space(bending) => BendingStiffness::Space(bending.map(|bending| bending * by)),
+                };
+                torsional_stiffness.iter_mut().for_each(|torsional| *torsional *= by);
                 shear_stiffness.iter_mut().for_each(|shear| *shear *= force);
             }
             Element::RotationalSpring { stiffness, .. } => *stiffness *= force * length,

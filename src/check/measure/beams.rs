@@ -12,12 +12,13 @@
 //! The integrals are taken numerically, the derivatives of `W` by numbers that carry them. At a release the rotation of
 //! the beam's end is the one without a moment.
 
+use crate::check::measure::dual_number::DualNumber;
 use crate::check::measure::vector::{MeasuredVector, padded};
-use crate::model::request::{Element as Posted, Model};
+use crate::model::request::{BendingStiffness, Element as Posted, Model};
 
 /// Error of a difference of two rounded numbers that were computed from rounded numbers, in units of the machine
 /// epsilon.
-const ROUNDINGS: f64 = 16.0;
+pub(super) const ROUNDINGS: f64 = 16.0;
 
 /// Points and weights of Gauss's rule of five points on (-1, 1).
 const GAUSS: [(f64, f64); 5] = [
@@ -62,7 +63,9 @@ pub(super) struct BeamResponse {
     /// For each node its number, the force and the moment of the node on the beam, and their rounding errors.
     pub nodes: [Option<NodeShare>; 3],
     /// Axial force, shear force and bending moment at both ends.
-    pub ends: [[f64; 3]; 2],
+    pub ends: [[f64; 6]; 2],
+    /// How many of these there are: three; in space six, the forces first.
+    pub of_end: usize,
     /// Rotations of the ends that are released.
     pub released: [Option<f64>; 2],
     pub energy: f64,
@@ -72,7 +75,7 @@ pub(super) struct BeamResponse {
 pub(super) struct NodeShare {
     pub node: usize,
     pub force: MeasuredVector,
-    pub moment: f64,
+    pub moment: MeasuredVector,
     pub force_rounding: f64,
     pub moment_rounding: f64,
 }
@@ -88,47 +91,21 @@ struct SegmentResponse {
     moment_rounding: f64,
 }
 
-/// A number with its derivatives by `c_1`, `c_2` and `a`.
-#[derive(Debug, Clone, Copy)]
-struct DualNumber(f64, [f64; 3]);
-
-impl DualNumber {
-    fn constant(value: f64) -> Self {
-        Self(value, [0.0; 3])
-    }
-
-    fn variable(value: f64, which: usize) -> Self {
-        Self(value, std::array::from_fn(|k| if k == which { 1.0 } else { 0.0 }))
-    }
-
-    fn times(self, factor: f64) -> Self {
-        Self(self.0 * factor, self.1.map(|part| part * factor))
-    }
-
-    fn plus(self, other: Self) -> Self {
-        Self(self.0 + other.0, std::array::from_fn(|k| self.1[k] + other.1[k]))
-    }
-
-    fn by(self, other: Self) -> Self {
-        Self(self.0 * other.0, std::array::from_fn(|k| self.0 * other.1[k] + self.1[k] * other.0))
-    }
-
-    fn over(self, other: Self) -> Self {
-        let value = self.0 / other.0;
-        Self(value, std::array::from_fn(|k| (self.1[k] - value * other.1[k]) / other.0))
-    }
-}
-
 /// The integral from 0 to 1.
 fn integral(of: impl Fn(f64) -> f64) -> f64 {
-    let width = 1.0 / f64::from(INTERVALS);
     let mut sum = 0.0;
+    integral_of(|point, weight| sum += weight * of(point));
+    sum
+}
+
+/// Calls `add` with the points and weights of an integral from 0 to 1.
+pub(super) fn integral_of(mut add: impl FnMut(f64, f64)) {
+    let width = 1.0 / f64::from(INTERVALS);
     for interval in 0..INTERVALS {
         for (point, weight) in GAUSS {
-            sum += 0.5 * width * weight * of(width * (f64::from(interval) + 0.5 + 0.5 * point));
+            add(width * (f64::from(interval) + 0.5 + 0.5 * point), 0.5 * width * weight);
         }
     }
-    sum
 }
 
 impl MeasuredSegment {
@@ -198,6 +175,7 @@ impl MeasuredBeam {
         let Posted::Beam { nodes, axial_stiffness, bending_stiffness, shear_stiffness, .. } = posted else {
             return None;
         };
+        let BendingStiffness::Plane(bending) = *bending_stiffness else { return None };
         let places = nodes.iter().map(|node| model.nodes.get(node)).collect::<Option<Vec<_>>>()?;
         let mut numbers = [0; 3];
         for (number, name) in numbers.iter_mut().zip(nodes) {
@@ -212,7 +190,7 @@ impl MeasuredBeam {
             half_turn,
             length: chord[0].hypot(chord[1]) / integral(|t| (half_turn * t).cos()),
             axial: *axial_stiffness,
-            bending: *bending_stiffness,
+            bending,
             shear_flexibility: shear_stiffness.map_or(0.0, f64::recip),
         };
         let first = chord(0)?;
@@ -246,15 +224,15 @@ impl MeasuredBeam {
     }
 
     /// The response to the given displacements and rotations of the nodes.
-    pub fn response(&self, u: &[MeasuredVector], rotations: &[f64]) -> BeamResponse {
+    pub fn response(&self, u: &[MeasuredVector], rotations: &[MeasuredVector]) -> BeamResponse {
         let last = self.last();
-        let mut turns = self.nodes.map(|node| rotations[node]);
+        let mut turns = self.nodes.map(|node| rotations[node].z);
         let relative = |place: usize| {
             let moved = u[self.nodes[place + 1]] - u[self.nodes[place]];
             [moved.x, moved.y]
         };
         self.turn_released_ends(&mut turns, relative);
-        let mut response = BeamResponse::default();
+        let mut response = BeamResponse { of_end: 3, ..BeamResponse::default() };
         for (share, node) in response.nodes.iter_mut().zip(self.nodes).take(last + 1) {
             *share = Some(NodeShare { node, ..NodeShare::default() });
         }
@@ -269,7 +247,7 @@ impl MeasuredBeam {
             for (end, sign) in [(0, -1.0), (1, 1.0)] {
                 if let Some(share) = &mut response.nodes[place + end] {
                     share.force += force * sign;
-                    share.moment += of_segment.moments[end];
+                    share.moment.z += of_segment.moments[end];
                     share.force_rounding += of_segment.force_rounding;
                     share.moment_rounding += of_segment.moment_rounding;
                 }
@@ -279,7 +257,7 @@ impl MeasuredBeam {
                     let (sine, cosine) = normal.sin_cos();
                     let [x, y] = of_segment.force;
                     let moment = sign * of_segment.moments[end];
-                    response.ends[end] = [cosine * x + sine * y, cosine * y - sine * x, moment];
+                    response.ends[end][..3].copy_from_slice(&[cosine * x + sine * y, cosine * y - sine * x, moment]);
                 }
             }
         }
@@ -287,7 +265,7 @@ impl MeasuredBeam {
         for (end, released) in [0, last].into_iter().zip(self.released) {
             if let (true, Some(share)) = (released, &mut response.nodes[end]) {
                 response.released[usize::from(end > 0)] = Some(turns[end]);
-                (share.moment, share.moment_rounding) = (0.0, 0.0);
+                (share.moment, share.moment_rounding) = (MeasuredVector::zeros(), 0.0);
             }
         }
         response

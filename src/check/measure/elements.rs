@@ -1,6 +1,7 @@
 //! Forces and strain energy of the posted elements, for the measure only.
 
 use crate::check::measure::beams::{BeamResponse, MeasuredBeam};
+use crate::check::measure::space_beams::MeasuredSpaceBeam;
 use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::model::request::{Element as Posted, Model, Strain};
 
@@ -26,6 +27,7 @@ pub(super) enum MeasuredElement {
         stiffness: [MeasuredVector; 3],
     },
     Beam(MeasuredBeam),
+    SpaceBeam(MeasuredSpaceBeam),
     RotationalSpring {
         node: usize,
         /// `None` is the ground.
@@ -45,7 +47,7 @@ pub(super) enum MeasuredResponse {
     Moment {
         node: usize,
         other: Option<usize>,
-        moment: f64,
+        moment: MeasuredVector,
         rounding: f64,
         energy: f64,
     },
@@ -92,6 +94,9 @@ impl MeasuredElement {
                 let (stiffness, prestress, strain) = (*axial_stiffness, *prestress, *strain);
                 Some(Self::Bar { ends, reference, before, rest, stiffness, prestress, strain })
             }
+            Posted::Beam { .. } if model.dimension == 3 => {
+                Some(Self::SpaceBeam(MeasuredSpaceBeam::new(model, posted)?))
+            }
             Posted::Beam { .. } => Some(Self::Beam(MeasuredBeam::new(model, posted)?)),
             Posted::RotationalSpring { nodes, stiffness, name: _ } => {
                 let other = nodes.get(1).map(|name| index(name).ok_or(())).transpose().ok()?;
@@ -111,19 +116,22 @@ impl MeasuredElement {
             Self::Bar { rest, stiffness, .. } => stiffness / rest,
             Self::Spring { stiffness, .. } => stiffness.iter().map(MeasuredVector::norm).fold(0.0, f64::max),
             Self::Beam(beam) => beam.stiffness(),
+            Self::SpaceBeam(beam) => beam.stiffness(),
             Self::RotationalSpring { .. } => 0.0,
         }
     }
 
     /// The response to the given displacements and rotations of the nodes.
-    pub fn response(&self, u: &[MeasuredVector], rotations: &[f64]) -> MeasuredResponse {
+    pub fn response(&self, u: &[MeasuredVector], rotations: &[MeasuredVector]) -> MeasuredResponse {
         MeasuredResponse::Forces(match self {
             Self::Beam(beam) => return MeasuredResponse::Beam(beam.response(u, rotations)),
+            Self::SpaceBeam(beam) => return MeasuredResponse::Beam(beam.response(u, rotations)),
             Self::RotationalSpring { node, other, stiffness } => {
-                let turn = rotations[*node] - other.map_or(0.0, |other| rotations[other]);
-                let turned = rotations[*node].abs().max(other.map_or(0.0, |other| rotations[other].abs()));
+                let turn = rotations[*node].z - other.map_or(0.0, |other| rotations[other].z);
+                let turned = rotations[*node].z.abs().max(other.map_or(0.0, |other| rotations[other].z.abs()));
                 let (moment, rounding) = (stiffness * turn, ROUNDINGS * f64::EPSILON * stiffness * turned);
                 let (node, other, energy) = (*node, *other, 0.5 * moment * turn);
+                let moment = MeasuredVector::z() * moment;
                 return MeasuredResponse::Moment { node, other, moment, rounding, energy };
             }
             Self::Bar { ends, reference, before, rest, stiffness, prestress, strain } => {

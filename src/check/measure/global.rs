@@ -38,8 +38,8 @@ impl Balance {
     }
 
     /// Adds a moment from outside.
-    pub fn add_moment(&mut self, moment: f64) {
-        self.moment.z += moment;
+    pub fn add_moment(&mut self, moment: MeasuredVector) {
+        self.moment += moment;
     }
 
     /// Includes the size of a force between two nodes.
@@ -64,14 +64,13 @@ impl Balance {
 pub(super) fn reactions<'a>(
     posted: &'a Posted,
     increment: &'a Increment,
-) -> Option<impl Iterator<Item = (usize, MeasuredVector, f64)> + 'a> {
+) -> Option<impl Iterator<Item = (usize, MeasuredVector, MeasuredVector)> + 'a> {
     let fits = increment.supports.len() == posted.supports.len()
         && posted.supports.iter().zip(increment.supports.iter()).all(|(node, (name, values))| {
             let node = &posted.nodes[*node];
-            **name == *node.name && values.len() == posted.dimension + usize::from(node.has_rotation)
+            **name == *node.name && values.len() == posted.components_of(node)
         });
-    let reaction =
-        |values: &[f64]| (padded(&values[..posted.dimension]), values.get(posted.dimension).copied().unwrap_or(0.0));
+    let reaction = |values: &[f64]| (padded(&values[..posted.dimension]), posted.rotation(values));
     fits.then(move || {
         let reactions = increment.supports.values().map(reaction);
         posted.supports.iter().copied().zip(reactions).map(|(node, (force, moment))| (node, force, moment))
@@ -94,7 +93,7 @@ pub(super) fn judge_element(
             return;
         }
         MeasuredResponse::Moment { moment, rounding, .. } => {
-            let off = state.moment.map_or(f64::INFINITY, |reported| (reported - moment).abs());
+            let off = state.moment.map_or(f64::INFINITY, |reported| (reported - moment.z).abs());
             errors.reported = worse(errors.reported, (off - rounding.min(off)) / (force_scale * length));
             return;
         }
@@ -116,15 +115,22 @@ fn off_ends(ends: &[BeamEndForces; 2], response: &BeamResponse, length: f64) -> 
         of_forces = of_forces.max(share.force_rounding);
         of_moments = of_moments.max(share.moment_rounding);
     }
-    let off = ends.iter().zip(&response.ends).flat_map(|(end, [axial, shear, moment])| {
-        let beyond = |off: f64, allowed: f64| off.abs() - allowed.min(off.abs());
-        [
-            beyond(end.axial_force - axial, of_forces),
-            beyond(end.shear_force - shear, of_forces),
-            beyond(end.bending_moment - moment, of_moments) / length,
-        ]
-    });
-    off.fold(0.0, worse)
+    let beyond = |off: f64, allowed: f64| off.abs() - allowed.min(off.abs());
+    let mut worst = 0.0;
+    for (end, expected) in ends.iter().zip(response.ends.iter().map(|end| &end[..response.of_end])) {
+        let reported: Vec<f64> = end.values().collect();
+        if reported.len() != expected.len() {
+            return f64::INFINITY;
+        }
+        // Forces come first, and as many moments as forces in space, one in the plane.
+        let forces = if expected.len() == 3 { 2 } else { 3 };
+        for (place, (reported, expected)) in reported.iter().zip(expected).enumerate() {
+            let off = reported - expected;
+            worst =
+                worse(worst, if place < forces { beyond(off, of_forces) } else { beyond(off, of_moments) / length });
+        }
+    }
+    worst
 }
 
 /// Adds to `errors` what is reported of the sum of the loads.

@@ -10,13 +10,13 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The version of the format. The version changes when the meaning of the data changes.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 
 /// The data of the previous point that the check of the next increment needs.
 #[derive(Debug, Clone)]
 pub(super) struct PreviousPoint {
     pub displacements: Vec<MeasuredVector>,
-    pub rotations: Vec<f64>,
+    pub rotations: Vec<MeasuredVector>,
     pub shifts: Vec<MeasuredVector>,
     /// `-r_t/|r_t|` in space of the contacts that are on their friction cones; in 3D only.
     pub directions: BTreeMap<usize, MeasuredVector>,
@@ -31,7 +31,7 @@ impl PreviousPoint {
     pub fn at_rest(posted: &Posted) -> Self {
         Self {
             displacements: vec![MeasuredVector::zeros(); posted.nodes.len()],
-            rotations: vec![0.0; posted.rotations()],
+            rotations: vec![MeasuredVector::zeros(); posted.rotations()],
             shifts: vec![MeasuredVector::zeros(); posted.moving],
             directions: BTreeMap::new(),
             slips: BTreeMap::new(),
@@ -53,9 +53,9 @@ pub struct JudgeHistory {
     arc_length: f64,
     /// One displacement for each node.
     displacements: Vec<MeasuredVector>,
-    /// One rotation for each node, then those of released ends; absent where there are none.
+    /// One rotation vector for each node, then those of released ends; absent where there are none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    rotations: Vec<f64>,
+    rotations: Vec<MeasuredVector>,
     /// The contacts with a direction of slip, in order, and their directions.
     directions: Vec<(usize, MeasuredVector)>,
     /// The contacts that have slipped, in order, and the sums of their slips.
@@ -123,7 +123,7 @@ pub fn take_up(mut judge: Judge, history: JudgeHistory) -> Result<Judge, History
     let posted = &judge.posted;
     let contacts = posted.contacts.len();
     if rotations.is_empty() {
-        rotations.resize(posted.rotations(), 0.0);
+        rotations.resize(posted.rotations(), MeasuredVector::zeros());
     }
     for (what, found, expected) in [
         ("nodes", displacements.len(), posted.nodes.len()),

@@ -45,7 +45,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `errors` | the errors and their maxima |
-//! | `posted`, `elements`, `beams`, `obstacles`, `vector` | the posted model, with indices instead of names |
+//! | `posted`, `elements`, `beams`, `space_beams`, `dual_number`, `obstacles`, `vector` | the posted model, with indices instead of names |
 //! | `contacts` | the check of one contact |
 //! | `global` | the balance of the whole structure, and the forces as reported |
 //! | `rows`, `apart` | the contacts with a row in an increment, and the contacts without a row |
@@ -54,6 +54,7 @@
 pub(crate) mod apart;
 pub(crate) mod beams;
 pub(crate) mod contacts;
+pub(crate) mod dual_number;
 pub(crate) mod elements;
 pub(crate) mod errors;
 pub(crate) mod global;
@@ -61,6 +62,7 @@ pub(crate) mod history;
 pub(crate) mod obstacles;
 pub(crate) mod posted;
 pub(crate) mod rows;
+pub(crate) mod space_beams;
 pub(crate) mod vector;
 
 pub use errors::{Errors, Largest, Maxima};
@@ -111,14 +113,14 @@ pub struct Judge {
 struct Workspace {
     loading: PostedLoading,
     displacements: Vec<MeasuredVector>,
-    /// Of nodes that have one, otherwise 0; then those of released ends.
-    rotations: Vec<f64>,
+    /// Rotation vectors of nodes that have one, otherwise 0 (in the plane about the third axis); then those of released ends.
+    rotations: Vec<MeasuredVector>,
     /// Unbalanced force of each node.
     balance: Vec<MeasuredVector>,
     /// Rounding error of the unbalanced force.
     rounding: Vec<f64>,
     /// Unbalanced moment of each node, and its rounding error.
-    moments: Vec<(f64, f64)>,
+    moments: Vec<(MeasuredVector, f64)>,
     frames: Vec<MeasuredFrame>,
     /// Of the elements whose forces the increment reports, in order.
     responses: Vec<MeasuredResponse>,
@@ -128,15 +130,16 @@ impl Workspace {
     /// Adds the forces and moments of a beam or a rotational spring to its nodes; returns the largest, as a force.
     fn add_turning(&mut self, response: &MeasuredResponse, outside: &mut Balance, length: f64) -> f64 {
         let mut most = 0.0_f64;
-        let add_moment = |moments: &mut Vec<(f64, f64)>, node: usize, moment: f64, rounding: f64| {
-            moments[node].0 += moment;
-            moments[node].1 += rounding;
-            moment.abs() / length
-        };
+        let add_moment =
+            |moments: &mut Vec<(MeasuredVector, f64)>, node: usize, moment: MeasuredVector, rounding: f64| {
+                moments[node].0 += moment;
+                moments[node].1 += rounding;
+                largest(&moment) / length
+            };
         match response {
             MeasuredResponse::Forces(_) => {}
             MeasuredResponse::Beam(response) => {
-                self.rotations.extend(response.released.iter().flatten());
+                self.rotations.extend(response.released.iter().flatten().map(|turn| MeasuredVector::z() * *turn));
                 for share in response.nodes.iter().flatten() {
                     self.balance[share.node] += share.force;
                     self.rounding[share.node] += share.force_rounding;
@@ -149,8 +152,8 @@ impl Workspace {
             MeasuredResponse::Moment { node, other, moment, rounding, .. } => {
                 most = add_moment(&mut self.moments, *node, *moment, *rounding);
                 match other {
-                    Some(other) => drop(add_moment(&mut self.moments, *other, -moment, *rounding)),
-                    None => outside.add_moment(-moment),
+                    Some(other) => drop(add_moment(&mut self.moments, *other, -*moment, *rounding)),
+                    None => outside.add_moment(-*moment),
                 }
             }
         }
@@ -172,7 +175,7 @@ impl Judge {
         let no_force = (NO_FORCE * stiffest * displacement_scale).max(f64::MIN_POSITIVE);
         let mut apart = Apart::new(&posted, displacement_scale);
         apart.begin(&posted, &none, &displacements);
-        let rotations = vec![0.0; nodes];
+        let rotations = vec![MeasuredVector::zeros(); nodes];
         let at_rest = posted.elements.iter().map(|element| element.response(&displacements, &rotations).energy());
         let initial_strain = at_rest.sum();
         Self {
@@ -193,7 +196,7 @@ impl Judge {
                 rotations,
                 balance,
                 rounding,
-                moments: vec![(0.0, 0.0); nodes],
+                moments: vec![(MeasuredVector::zeros(), 0.0); nodes],
                 frames,
                 responses: Vec::new(),
             },
@@ -253,7 +256,7 @@ impl Judge {
     /// Sets the stage, displacements and load of an increment; returns `false` if the increment does not fit the model.
     fn read(&mut self, increment: &Increment) -> bool {
         let posted = &self.posted;
-        self.work.rotations.resize(posted.nodes.len(), 0.0);
+        self.work.rotations.resize(posted.nodes.len(), MeasuredVector::zeros());
         let known = posted.stages[self.stage..].iter().position(|stage| stage.name == *increment.stage);
         for _ in 0..known.unwrap_or(0) {
             self.work.loading.set(&self.held, &posted.stages[self.stage], self.before.load);
@@ -272,10 +275,10 @@ impl Judge {
         for (index, (node, displacement)) in posted.nodes.iter().zip(&mut self.work.displacements).enumerate() {
             let in_place = increment.displacements.get_index(index).filter(|(name, _)| ***name == node.name);
             let found = in_place.map(|(_, values)| values).or_else(|| increment.displacements.get(node.name.as_str()));
-            let count = posted.dimension + usize::from(node.has_rotation);
+            let count = posted.components_of(node);
             let found = found.filter(|values| values.len() == count);
             *displacement = found.map_or_else(MeasuredVector::zeros, |values| padded(&values[..posted.dimension]));
-            self.work.rotations[index] = found.and_then(|values| values.get(posted.dimension)).copied().unwrap_or(0.0);
+            self.work.rotations[index] = found.map_or_else(MeasuredVector::zeros, |values| posted.rotation(values));
             fits &= found.is_some();
         }
         fits
@@ -294,7 +297,7 @@ impl Judge {
             most = most.max(largest(load));
             let moment = work.loading.moments[node];
             work.moments[node] = (-moment, 0.0);
-            most = most.max(moment.abs() / self.length);
+            most = most.max(largest(&moment) / self.length);
             outside.add_moment(moment);
             outside.add(posted, node, &work.displacements[node], load);
         }
@@ -373,8 +376,8 @@ impl Judge {
         };
         for (node, reaction, moment) in reactions {
             balance.add_moment(moment);
-            if !posted.nodes[node].rotation_held {
-                errors.reported = worse(errors.reported, moment.abs() / (force * self.length));
+            if !posted.nodes[node].is_turn_held() {
+                errors.reported = worse(errors.reported, largest(&moment) / (force * self.length));
             }
             balance.add(posted, node, &work.displacements[node], &reaction);
             let held = posted.nodes[node].held;
@@ -392,11 +395,15 @@ impl Judge {
             let beyond = |k: usize| balance[k].abs() - rounding.min(balance[k].abs());
             (0..self.posted.dimension).filter(|k| !node.held[*k]).map(beyond)
         });
-        let turning = self.posted.nodes.iter().zip(&self.work.moments);
-        let moments = turning.filter(|(node, _)| node.has_rotation && !node.rotation_held);
-        let beyond =
-            |(_, (moment, rounding)): (_, &(f64, f64))| (moment.abs() - rounding.min(moment.abs())) / self.length;
-        moments.map(beyond).chain(components).fold(0.0, worse)
+        let turning = self.posted.nodes.iter().zip(&self.work.moments).zip(&self.work.rotations);
+        let turning = turning.filter(|((node, _), _)| node.has_rotation);
+        let moments = turning.flat_map(|((node, (moment, rounding)), rotation)| {
+            // Where some components of the rotation vector are held, the moment is along the others as it does work there.
+            let moment = if node.is_turn_held() { space_beams::along_components(rotation, moment) } else { *moment };
+            let beyond = move |k: usize| (moment[k].abs() - rounding.min(moment[k].abs())) / self.length;
+            (0..3).filter(|k| !node.rotation_held[*k]).map(beyond)
+        });
+        moments.chain(components).fold(0.0, worse)
     }
 
     fn off_support(&self) -> f64 {
@@ -405,8 +412,10 @@ impl Judge {
             (0..self.posted.dimension).filter(|k| node.held[*k]).map(|k| (found[k] - given[k]).abs())
         });
         let turned = self.work.rotations.iter().zip(&self.work.loading.rotations);
-        let rotations = self.posted.nodes.iter().zip(turned).filter(|(node, _)| node.rotation_held);
-        let off_rotation = rotations.map(|(_, (found, given))| (found - given).abs()).fold(0.0, worse);
+        let rotations = self.posted.nodes.iter().zip(turned).flat_map(|(node, (found, given))| {
+            (0..3).filter(|k| node.rotation_held[*k]).map(|k| (found[k] - given[k]).abs())
+        });
+        let off_rotation = rotations.fold(0.0, worse);
         worse(off_rotation, components.fold(0.0, worse) / self.length)
     }
 
@@ -417,12 +426,17 @@ impl Judge {
         for (after, before) in self.work.displacements.iter().zip(&self.before.displacements) {
             squared += ((after - before) * (1.0 / self.length)).norm_squared();
         }
-        let nodes = self.posted.nodes.len();
         for (place, (after, before)) in self.work.rotations.iter().zip(&self.before.rotations).enumerate() {
             let turned = after - before;
-            // Of a released end whole turns are not known.
-            let whole = if place < nodes { 0.0 } else { (turned / TAU).round() * TAU };
-            squared += (turned - whole).powi(2);
+            // Of a released end whole turns are not known. In space the angle between both rotations counts, or where
+            // a component is held the rotation vector.
+            squared += match self.posted.nodes.get(place) {
+                None => (turned.z - (turned.z / TAU).round() * TAU).powi(2),
+                Some(node) if self.posted.dimension == 3 && node.has_rotation && !node.is_turn_held() => {
+                    space_beams::angle_between(before, after).powi(2)
+                }
+                Some(_) => turned.norm_squared(),
+            };
         }
         squared.sqrt()
     }

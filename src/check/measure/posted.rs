@@ -31,7 +31,15 @@ pub(super) struct PostedNode {
     /// Components that a support fixes.
     pub held: [bool; 3],
     pub has_rotation: bool,
-    pub rotation_held: bool,
+    /// Components of the rotation vector that a support fixes; in the plane the first two do not move.
+    pub rotation_held: [bool; 3],
+}
+
+impl PostedNode {
+    /// Whether a support fixes a component of the rotation.
+    pub fn is_turn_held(&self) -> bool {
+        self.rotation_held.iter().any(|held| *held)
+    }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -47,9 +55,9 @@ pub(super) struct PostedContact {
 pub(super) struct PostedStage {
     pub name: String,
     forces: PostedLoadPattern,
-    moments: Vec<(usize, f64)>,
+    moments: PostedLoadPattern,
     displacements: PostedLoadPattern,
-    rotations: Vec<(usize, f64)>,
+    rotations: PostedLoadPattern,
     motions: PostedLoadPattern,
     /// Load factor of a dimensionless load of 1.
     pub load_scale: f64,
@@ -64,8 +72,8 @@ pub(super) struct PostedLoading {
     pub forces: Vec<MeasuredVector>,
     pub displacements: Vec<MeasuredVector>,
     /// Moments on the nodes, and prescribed rotations.
-    pub moments: Vec<f64>,
-    pub rotations: Vec<f64>,
+    pub moments: Vec<MeasuredVector>,
+    pub rotations: Vec<MeasuredVector>,
     pub shifts: Vec<MeasuredVector>,
 }
 
@@ -73,11 +81,11 @@ impl Posted {
     pub fn new(request: &JobRequest, load_scales: &[f64]) -> Self {
         let model = &request.model;
         let node = |((name, place), has_rotation): ((&String, &Vec<f64>), bool)| {
-            let (mut held, mut rotation_held) = ([false; 3], false);
+            let (mut held, mut rotation_held) = ([false; 3], [false; 3]);
             for component in model.supports.get(name).into_iter().flatten() {
                 match held.get_mut(component.index()) {
                     Some(held) => *held = true,
-                    None => rotation_held = true,
+                    None => rotation_held[component.index() - 3] = true,
                 }
             }
             PostedNode { name: name.clone(), place: padded(place), held, has_rotation, rotation_held }
@@ -94,14 +102,14 @@ impl Posted {
         let stage = |(stage, load_scale): (&crate::model::request::Stage, f64)| PostedStage {
             name: stage.name.clone(),
             forces: pattern(&stage.forces, &|name| model.nodes.get_index_of(name)),
-            moments: numbered(model, stage.moments.iter().map(|(name, moment)| (name, Some(*moment)))),
+            moments: numbered(model, stage.moments.iter().map(|(name, moment)| (name, MeasuredVector::z() * *moment))),
             displacements: pattern(&stage.displacements, &|name| model.nodes.get_index_of(name))
                 .into_iter()
                 .map(|(node, values)| (node, in_dimension(&values, model.dimension)))
                 .collect(),
             rotations: numbered(
                 model,
-                stage.displacements.iter().map(|(name, values)| (name, values.get(model.dimension).copied())),
+                stage.displacements.iter().map(|(name, values)| (name, rotation(values, model.dimension))),
             ),
             motions: pattern(&stage.obstacle_motion, &|name| moving.get_index_of(name)),
             load_scale,
@@ -132,6 +140,20 @@ impl Posted {
         self.rotations() > self.nodes.len() || self.nodes.iter().any(|node| node.has_rotation)
     }
 
+    /// Number of components that an increment has of a node.
+    pub fn components_of(&self, node: &PostedNode) -> usize {
+        match (node.has_rotation, self.dimension) {
+            (false, dimension) => dimension,
+            (true, 2) => 3,
+            (true, _) => 6,
+        }
+    }
+
+    /// The rotation vector among the components of a node.
+    pub fn rotation(&self, values: &[f64]) -> MeasuredVector {
+        rotation(values, self.dimension)
+    }
+
     /// Number of nodes and of released ends.
     pub fn rotations(&self) -> usize {
         let releases = |element: &MeasuredElement| match element {
@@ -155,8 +177,17 @@ impl Posted {
 }
 
 /// Numbers of the nodes with their values, as far as there are any.
-fn numbered<'a>(model: &Model, values: impl Iterator<Item = (&'a String, Option<f64>)>) -> Vec<(usize, f64)> {
-    values.filter_map(|(name, value)| Some((model.nodes.get_index_of(name)?, value?))).collect()
+fn numbered<'a>(model: &Model, values: impl Iterator<Item = (&'a String, MeasuredVector)>) -> PostedLoadPattern {
+    values.filter_map(|(name, value)| Some((model.nodes.get_index_of(name)?, value))).collect()
+}
+
+/// The rotation vector after the translations; zero where there is none.
+pub(super) fn rotation(values: &[f64], dimension: usize) -> MeasuredVector {
+    match values.get(dimension..) {
+        Some([turn]) => MeasuredVector::z() * *turn,
+        Some([x, y, z]) => MeasuredVector::new(*x, *y, *z),
+        _ => MeasuredVector::zeros(),
+    }
 }
 
 /// The vector without what follows the components of the space.
@@ -182,8 +213,8 @@ impl PostedLoading {
         Self {
             forces: vec![MeasuredVector::zeros(); nodes],
             displacements: vec![MeasuredVector::zeros(); nodes],
-            moments: vec![0.0; nodes],
-            rotations: vec![0.0; nodes],
+            moments: vec![MeasuredVector::zeros(); nodes],
+            rotations: vec![MeasuredVector::zeros(); nodes],
             shifts: vec![MeasuredVector::zeros(); posted.moving],
         }
     }
@@ -199,21 +230,13 @@ impl PostedLoading {
             (&mut self.forces, &held.forces, &stage.forces),
             (&mut self.displacements, &held.displacements, &stage.displacements),
             (&mut self.shifts, &held.shifts, &stage.motions),
+            (&mut self.moments, &held.moments, &stage.moments),
+            (&mut self.rotations, &held.rotations, &stage.rotations),
         ];
         for (sums, held, pattern) in all {
             sums.copy_from_slice(held);
             for (place, values) in pattern {
                 sums[*place] += values * load;
-            }
-        }
-        let turning = [
-            (&mut self.moments, &held.moments, &stage.moments),
-            (&mut self.rotations, &held.rotations, &stage.rotations),
-        ];
-        for (sums, held, pattern) in turning {
-            sums.copy_from_slice(held);
-            for (node, value) in pattern {
-                sums[*node] += value * load;
             }
         }
     }

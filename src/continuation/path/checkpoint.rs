@@ -128,6 +128,9 @@ impl Checkpoint {
         if !near.is_sorted_by(|one, next| one < next) || near.last().is_some_and(|last| *last >= all) {
             return same("contacts", near.last().map_or(0, |last| last + 1), all);
         }
+        if !self.at.references.is_empty() {
+            same("degrees of freedom", self.at.references.len(), freedoms)?;
+        }
         let contacts = near.len();
         let state = |state: &State| {
             same("degrees of freedom", state.displacement.len(), freedoms)?;

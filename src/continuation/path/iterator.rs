@@ -134,6 +134,7 @@ fn increment(trace: &mut PathTrace<'_>) -> Option<Increment> {
         trace.end(StopReason::MaxIncrements);
         return None;
     }
+    trace.refer();
     if trace.at.here.rate.is_none() {
         return Some(stages::begin_stage(trace));
     }

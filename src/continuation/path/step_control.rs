@@ -216,7 +216,7 @@ pub(crate) fn reason_of_creep(trace: &mut PathTrace<'_>, step: f64, changes: boo
 
 /// Whether some bar has become so short that the displacements no longer determine its direction.
 pub(crate) fn shrinks_to_a_point(trace: &PathTrace<'_>, state: &State) -> bool {
-    let structure = &trace.scene.structure;
+    let structure = &*trace.structure;
     structure.smallest_stretch(&state.displacement) < SMALLEST_STRETCH
         && structure.smallest_stretch(&trace.at.here.state.displacement) >= SMALLEST_STRETCH
 }
@@ -289,7 +289,7 @@ pub(crate) fn way_back(
 
 /// The reason why steps became too short.
 fn reason_of_underflow(trace: &PathTrace<'_>) -> StopReason {
-    let stretch = trace.scene.structure.smallest_stretch(&trace.at.here.state.displacement);
+    let stretch = trace.structure.smallest_stretch(&trace.at.here.state.displacement);
     if stretch < COLLAPSED { StopReason::CollapsedBar } else { StopReason::StepUnderflow }
 }
 
@@ -299,7 +299,7 @@ fn balance(trace: &PathTrace<'_>, rate: &Rate, reached: Box<Reached>) -> Accepte
     let end = (&reached.corrected.state, &reached.rate);
     let (loading, modes, turned) = (trace.loading(), &trace.at.here.modes, rate.angle(&reached.rate));
     let (external_work, dissipated) = work_and_dissipation::work_and_dissipation(loading, modes, start, end, turned);
-    let strain = trace.scene.structure.strain_energy(&reached.corrected.state.displacement) - trace.initial_strain;
+    let strain = trace.structure.strain_energy(&reached.corrected.state.displacement) - trace.initial_strain;
     let (step, force_scale) = (reached.step, reached.corrected.force_scale);
     let added = Added { step, external_work, dissipated, strain, force_scale };
     let (mode_named, crossing, signature) = (None, None, None);
@@ -343,7 +343,7 @@ fn next_step_factor(trace: &PathTrace<'_>, accepted: &AcceptedStep, tried: f64, 
     // Next to stiff elements round-off limits the accuracy of the forces: the energy stored in soft elements alone may
     // be smaller than its effect, whatever the step. A short step is therefore not shortened any further.
     let by_stiffness = || {
-        let of_forces = trace.scene.structure.rounding(&reached.corrected.state.displacement);
+        let of_forces = trace.structure.rounding(&reached.corrected.state.displacement);
         reached.step * of_forces.iter().fold(0.0_f64, |most, value| value.max(most))
     };
     let is_too_large = imbalance > TARGET_IMBALANCE * size;

@@ -63,8 +63,9 @@ pub(crate) fn describe_motion(scene: &Scene, rate: &[f64]) -> String {
     let rank = |components: &[f64]| (size(components) / (MOVED * largest)).round();
     moved.sort_by(|(_, one), (_, other)| rank(other).total_cmp(&rank(one)));
     let along = |components: &[f64]| {
-        let names = if scene.structure.dimension == 2 { ["x", "y", "rz"] } else { ["x", "y", "z"] };
-        let axes = names.into_iter().zip(components);
+        let names: &[&str] =
+            if scene.structure.dimension == 2 { &["x", "y", "rz"] } else { &["x", "y", "z", "rx", "ry", "rz"] };
+        let axes = names.iter().copied().zip(components);
         let axes = axes.filter(|(_, value)| value.abs() > 0.1 * size(components)).map(|(axis, _)| axis);
         axes.collect::<Vec<_>>().join(" and ")
     };

@@ -30,16 +30,25 @@ pub(crate) fn element_rows(scene: &Scene, row: &RowSource<'_>) -> Vec<ElementSta
                 ends: None,
                 moment: None,
             };
-            match scene.structure.resultants(*place, &row.state.displacement) {
+            match row.loading.structure.resultants(*place, &row.state.displacement) {
                 Some(Resultants::Axial(axial)) => state.axial_force = Some(axial * force),
                 Some(Resultants::Force(of_spring)) => {
                     state.force = Some(of_spring[..dimension].iter().map(|value| value * force).collect());
                 }
                 Some(Resultants::Ends(ends)) => {
-                    state.ends = Some(ends.map(|end| BeamEndForces {
-                        axial_force: end.axial_force * force,
-                        shear_force: end.shear_force * force,
-                        bending_moment: end.bending_moment * force * length,
+                    state.ends = Some(ends.map(|end| {
+                        let moment = end.bending_moment * force * length;
+                        BeamEndForces::in_plane(end.axial_force * force, end.shear_force * force, moment)
+                    }));
+                }
+                Some(Resultants::SpaceEnds(ends)) => {
+                    state.ends = Some(ends.map(|end| {
+                        BeamEndForces::in_space(
+                            end.axial_force * force,
+                            end.shear_forces.map(|value| value * force),
+                            end.torsional_moment * force * length,
+                            end.bending_moments.map(|value| value * force * length),
+                        )
                     }));
                 }
                 Some(Resultants::Moment(moment)) => state.moment = Some(moment * force * length),
@@ -56,9 +65,14 @@ pub(crate) fn support_reactions(scene: &Scene, row: &RowSource<'_>) -> NodalValu
     if recorded.supported_nodes.is_empty() {
         return NodalValues::default();
     }
-    let (structure, loading) = (&scene.structure, row.loading);
+    let (structure, loading) = (row.loading.structure, row.loading);
     let mut unbalanced = vec![0.0; structure.freedoms()];
     write_unbalanced(loading, row.state, &mut unbalanced);
+    let in_space = structure.dimension == 3;
+    let mut moments = vec![0.0; if in_space { structure.freedoms() } else { 0 }];
+    if in_space {
+        structure.internal_forces_in_global_axes(&row.state.displacement, &mut moments);
+    }
     let pressed = row.state.reactions.iter().enumerate().filter(|(_, reaction)| reaction.size() > 0.0);
     for (contact, reaction) in pressed {
         let force = node_contact_forces::force(&loading.frame(contact, row.state), reaction);
@@ -70,7 +84,13 @@ pub(crate) fn support_reactions(scene: &Scene, row: &RowSource<'_>) -> NodalValu
     let (force, length) = (scene.plan().force_scale, scene.plan().displacement_scale);
     let mut components = Vec::new();
     for (node, reactions) in recorded.supported_nodes.iter().zip(recorded.no_reactions.values()) {
+        let turns_freely = structure.numbering.rotations_of(*node).all(|freedom| !held(freedom));
         for (place, freedom) in structure.freedoms_of(*node).enumerate().take(reactions.len()) {
+            if in_space && place >= structure.dimension {
+                // A moment in global axes, on a node none of whose rotations is held none.
+                components.push(if turns_freely { 0.0 } else { moments[freedom] * force * length });
+                continue;
+            }
             let unit = if place < structure.dimension { force } else { force * length };
             components.push(if held(freedom) { unbalanced[freedom] * unit } else { 0.0 });
         }
@@ -80,7 +100,7 @@ pub(crate) fn support_reactions(scene: &Scene, row: &RowSource<'_>) -> NodalValu
 
 /// The sum of the applied forces over the nodes.
 pub(crate) fn applied_forces(scene: &Scene, row: &RowSource<'_>) -> SpaceVector {
-    let (structure, loading) = (&scene.structure, row.loading);
+    let (structure, loading) = (row.loading.structure, row.loading);
     let mut sum = [0.0; 3];
     for node in 0..structure.numbering.nodes() {
         for (sum, freedom) in sum.iter_mut().zip(structure.translations_of(node)) {

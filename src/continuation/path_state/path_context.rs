@@ -17,6 +17,7 @@ use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_contact_forces::{is_in_plane, taken_apart, total_force};
 use crate::mechanics::problem::state::State;
 use crate::mechanics::problem::tolerances::NEGLIGIBLE_FORCE;
+use crate::mechanics::structure::Structure;
 use crate::resources::budget::Breach;
 use crate::resources::cancel::CancelFlag;
 use crate::result::increment::{Increment, Point};
@@ -37,6 +38,8 @@ pub(crate) struct PathTrace<'a> {
     /// Strain energy of the undeformed structure (prestress).
     pub initial_strain: f64,
     pub at: Progress,
+    /// The scene's structure; where nodes turn in space, with references of its own that follow the path.
+    pub structure: Cow<'a, Structure>,
     pub near: Near,
     pub far: FarContacts,
     /// Factorisation for the next step.
@@ -51,6 +54,10 @@ impl<'a> PathTrace<'a> {
         let undeformed = vec![0.0; scene.structure.freedoms()];
         let initial_strain = scene.structure.strain_energy(&undeformed);
         at.hold(scene);
+        let mut structure = Cow::Borrowed(&scene.structure);
+        if !at.references.is_empty() {
+            structure.to_mut().refer_to(&at.references);
+        }
         let near = Near::of(scene, &at);
         let far = contact_search::far_contacts(scene, &at);
         Self {
@@ -60,6 +67,7 @@ impl<'a> PathTrace<'a> {
             elapsed_before,
             initial_strain,
             at,
+            structure,
             near,
             far,
             cached: CachedFactorisation::default(),
@@ -72,7 +80,7 @@ impl<'a> PathTrace<'a> {
     }
 
     pub(crate) fn loading(&self) -> Loading<'_> {
-        self.near.loading(self.scene)
+        Loading { structure: &self.structure, ..self.near.loading(self.scene) }
     }
 
     pub(crate) fn rules(&self) -> Rules<'_> {
@@ -204,7 +212,19 @@ impl<'a> PathTrace<'a> {
 
     /// The loading of all contacts, including those out of reach.
     pub(crate) fn whole_loading(&self) -> Loading<'_> {
-        contact_search::whole(self.scene, &self.at)
+        Loading { structure: &self.structure, ..contact_search::whole(self.scene, &self.at) }
+    }
+
+    /// Places the references of nodes that turn in space at the present point, and expresses there what a step starts
+    /// from. A factorisation of before does not serve for it.
+    pub(crate) fn refer(&mut self) {
+        if !self.structure.turning.are_there() {
+            return;
+        }
+        let before = self.structure.turning.clone();
+        self.structure.to_mut().refer(&self.at.here.state.displacement);
+        self.at.express(&before, &self.structure.turning);
+        (self.cached, self.at.here.is_factorised) = (CachedFactorisation::default(), false);
     }
 
     /// Adds every contact that could close within a few steps of this arc length to those in reach.
@@ -240,7 +260,8 @@ impl<'a> PathTrace<'a> {
         });
         let mut all = Vec::with_capacity(self.at.near.len());
         all.extend(held);
-        Visited { stage: self.at.stage, displacement: displacement.clone(), load: *load, held: all }
+        let displacement = self.structure.turning.totals(displacement).into_owned();
+        Visited { stage: self.at.stage, displacement, load: *load, held: all }
     }
 }
 

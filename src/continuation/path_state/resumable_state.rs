@@ -10,6 +10,7 @@ use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::state::{Rate, State};
+use crate::mechanics::structure::turning_nodes::TurningNodes;
 use crate::result::increment::Point;
 use crate::step::interpolation::PlacedPoint;
 use serde::{Deserialize, Serialize};
@@ -31,6 +32,10 @@ pub(crate) struct Progress {
     /// Indices of the scene's contacts in reach, in ascending order: each has one reaction and one mode.
     pub near: Vec<usize>,
     pub here: PresentPoint,
+    /// Total rotation vectors from which those of nodes in space are measured, over all degrees of freedom; empty where
+    /// none turns, and before the first step.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub references: Vec<f64>,
     /// Arc length of the next attempted step.
     pub step: f64,
     /// Waiting time before contact changes are treated together again.
@@ -116,6 +121,7 @@ impl Progress {
                 is_singular: false,
                 beside: None,
             },
+            references: Vec::new(),
             step: scene.analysis.arc_length.initial,
             waiting: JoinBackoff::default(),
             creeping: 0,
@@ -161,6 +167,26 @@ impl Progress {
         }
         self.listed.iter_mut().for_each(listed);
         self.followed.iter_mut().for_each(|followed| listed(&mut followed.listed));
+    }
+
+    /// Expresses the present point, and points and rates near by, by other references of the rotations.
+    pub fn express(&mut self, before: &TurningNodes, after: &TurningNodes) {
+        let here = &mut self.here;
+        let place = &here.state.displacement;
+        let rate = |rate: &mut Rate| before.express(after, &mut place.clone(), Some(&mut rate.displacement));
+        here.rate.iter_mut().chain(&mut here.drift).chain(&mut here.beside).for_each(rate);
+        let listed = self.followed.iter_mut().map(|followed| &mut followed.listed).chain(&mut self.listed);
+        for option in listed.flat_map(|listed| &mut listed.options) {
+            rate(&mut option.rate);
+            option.beside.iter_mut().for_each(rate);
+        }
+        let point = |state: &mut State, rate: &mut Rate| {
+            before.express(after, &mut state.displacement, Some(&mut rate.displacement));
+        };
+        here.before.iter_mut().for_each(|before| point(&mut before.state, &mut before.rate));
+        self.begun.iter_mut().for_each(|(state, rate)| point(state, rate));
+        here.state.displacement = before.totals(&here.state.displacement).into_owned();
+        self.references = after.references().to_vec();
     }
 
     /// Sums up the constant load of the previous stages: the same bits whenever it is computed.

@@ -55,7 +55,7 @@ pub(crate) fn increment(scene: &Scene, totals: &Totals, row: &RowSource<'_>) -> 
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let energy_unit = length * force;
     let stage = &scene.stages[row.stage];
-    let displacements = scene.nodal_motion(&row.state.displacement, length);
+    let displacements = scene.nodal_motion(&row.loading.structure.turning.totals(&row.state.displacement), length);
     let (contacts, complementarity) = contact_rows(scene, row, totals);
     let directions = is_worth_listing(row.options).then(|| {
         let direction = |(index, option): (usize, &DirectionChoice)| Direction {

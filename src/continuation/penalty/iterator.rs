@@ -14,17 +14,21 @@ use crate::continuation::penalty::step_control::AcceptedPenaltyStep;
 use crate::continuation::scene::Scene;
 use crate::mechanics::problem::loading::{LoadPattern, Loading};
 use crate::mechanics::problem::state::State;
+use crate::mechanics::structure::Structure;
 use crate::model::request::Regularised;
 use crate::resources::budget::{self, Budget};
 use crate::resources::cancel::CancelFlag;
 use crate::result::increment::{self, Increment, PointKind};
 use crate::result::report::Report;
 use crate::result::stop_reason::StopReason;
+use std::borrow::Cow;
 use std::time::Instant;
 
 /// A path being traced by the regularised method.
 pub struct RegularisedPath<'a> {
     pub(super) scene: &'a Scene,
+    /// The scene's structure; where nodes turn in space, with references of its own that follow the path.
+    pub(super) structure: Cow<'a, Structure>,
     pub(super) settings: Regularised,
     pub(super) cancel: CancelFlag,
     budget: Budget,
@@ -72,6 +76,7 @@ impl<'a> RegularisedPath<'a> {
             here: PenaltyPoint { state, contacts },
             totals: Totals::begun(),
             counts: StageCounts::default(),
+            structure: Cow::Borrowed(&scene.structure),
             scene,
         }
     }
@@ -89,7 +94,7 @@ impl<'a> RegularisedPath<'a> {
     pub(super) fn system(&self) -> PenaltySystem<'_> {
         PenaltySystem {
             loading: Loading {
-                structure: &self.scene.structure,
+                structure: &self.structure,
                 contacts: &self.scene.contacts,
                 corners: &self.scene.corners,
                 pattern: &self.scene.stages[self.stage].pattern,
@@ -97,6 +102,20 @@ impl<'a> RegularisedPath<'a> {
             },
             penalties: Penalties { normal: self.settings.normal_penalty, tangential: self.settings.tangential_penalty },
         }
+    }
+
+    /// Places the references of nodes that turn in space at the present point. The increment that led here is the same
+    /// by both references; the tangent is formed anew.
+    fn refer(&mut self) {
+        if !self.structure.turning.are_there() {
+            return;
+        }
+        let before = self.structure.turning.clone();
+        self.structure.to_mut().refer(&self.here.state.displacement);
+        self.here.state.displacement = before.totals(&self.here.state.displacement).into_owned();
+        let evaluation = self.system().evaluate(&self.here, &self.here.state);
+        self.totals.work.factorisations += 1;
+        self.tangent = Factorisation::new(evaluation.tangent);
     }
 
     /// The row with which a stage begins. Where a bound of the stage is already met, the stage ends there too.
@@ -129,7 +148,7 @@ impl<'a> RegularisedPath<'a> {
             step,
             external_work,
             dissipated,
-            strain: self.scene.structure.strain_energy(&self.here.state.displacement) - self.initial_strain,
+            strain: self.structure.strain_energy(&self.here.state.displacement) - self.initial_strain,
             force_scale: converged.force_scale,
         });
         self.counts.increments += 1;
@@ -258,6 +277,7 @@ impl RegularisedPath<'_> {
             self.end(StopReason::MaxIncrements);
             return None;
         }
+        self.refer();
         if !self.begun {
             return Some(self.begin_stage());
         }

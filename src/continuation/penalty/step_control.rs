@@ -120,7 +120,7 @@ fn end_stage_if_passed(
 
 /// The reason why steps became too short.
 fn reason_of_failure(path: &RegularisedPath<'_>) -> StopReason {
-    let stretch = path.scene.structure.smallest_stretch(&path.here.state.displacement);
+    let stretch = path.structure.smallest_stretch(&path.here.state.displacement);
     if path.system().is_mechanism(&path.here) {
         StopReason::Mechanism
     } else if stretch < COLLAPSED {

@@ -5,9 +5,11 @@ use crate::mechanics::structure::elements::bar::Bar;
 use crate::mechanics::structure::elements::beam::Beam;
 use crate::mechanics::structure::elements::beam::segment::SectionStiffness;
 use crate::mechanics::structure::elements::rotational_spring::RotationalSpring;
+use crate::mechanics::structure::elements::space_beam::SpaceBeam;
+use crate::mechanics::structure::elements::space_beam::segment::SpaceSectionStiffness;
 use crate::mechanics::structure::elements::spring::Spring;
 use crate::model::Model;
-use crate::model::request::Element;
+use crate::model::request::{BendingStiffness, Element};
 use std::collections::HashMap;
 
 /// Builds the elements of a model, one after the other.
@@ -32,6 +34,7 @@ impl<'a> ElementBuilder<'a> {
             match element {
                 Element::Bar { .. } => elements.extend(self.bar(element)),
                 Element::Spring { nodes, stiffness, name: _ } => elements.push(self.spring(nodes, stiffness)),
+                Element::Beam { .. } if self.model.dimension == 3 => elements.extend(self.space_beam(element)),
                 Element::Beam { .. } => elements.extend(self.beam(element)),
                 Element::RotationalSpring { nodes, stiffness, name: _ } => {
                     let nodes: Vec<usize> = nodes.iter().map(|node| self.numbers[node.as_str()]).collect();
@@ -82,11 +85,40 @@ impl<'a> ElementBuilder<'a> {
         }
     }
 
+    fn space_beam(&self, element: &Element) -> Option<SpaceBeam> {
+        let Element::Beam { nodes, axial_stiffness, bending_stiffness, torsional_stiffness, orientation, .. } = element
+        else {
+            return None;
+        };
+        let Element::Beam { shear_stiffness, .. } = element else { return None };
+        let (BendingStiffness::Space(bending), Some(torsional)) = (bending_stiffness, torsional_stiffness) else {
+            return None;
+        };
+        let of_moments = self.force * self.length * self.length;
+        let stiffness = SpaceSectionStiffness {
+            axial: axial_stiffness / self.force,
+            bending: bending.map(|stiffness| stiffness / of_moments),
+            torsional: torsional / of_moments,
+            shear: shear_stiffness.map(|shear| shear / self.force),
+        };
+        let orientation: [f64; 3] = orientation.as_deref()?.try_into().ok()?;
+        let chords: Vec<[f64; 3]> = nodes.windows(2).map(|pair| self.vector(&pair[0], &pair[1])).collect();
+        let numbers: Vec<usize> = nodes.iter().map(|node| self.numbers[node.as_str()]).collect();
+        match (&numbers[..], &chords[..]) {
+            (&[first, middle, last], &[one, other]) => {
+                Some(SpaceBeam::curved([first, middle, last], [one, other], orientation, stiffness))
+            }
+            (&[first, last], &[chord]) => Some(SpaceBeam::straight([first, last], chord, orientation, stiffness)),
+            _ => None,
+        }
+    }
+
     /// At a release the beam takes a rotation of the node that no other element uses.
     fn beam(&mut self, element: &Element) -> Option<Beam> {
         let Element::Beam { nodes, axial_stiffness, bending_stiffness, shear_stiffness, .. } = element else {
             return None;
         };
+        let BendingStiffness::Plane(bending_stiffness) = bending_stiffness else { return None };
         let stiffness = SectionStiffness {
             axial: axial_stiffness / self.force,
             bending: bending_stiffness / self.force / self.length / self.length,

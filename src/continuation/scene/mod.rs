@@ -76,7 +76,7 @@ pub(crate) struct AdditionalParts {
 
 /// Zero displacements of all nodes, with the rotations of those that have one.
 fn still(model: &Model) -> NodalValues {
-    let components = |rotates: bool| vec![0.0; model.dimension + usize::from(rotates)];
+    let components = |rotates: bool| vec![0.0; model.dimension + if rotates { model.rotations() } else { 0 }];
     let nodes = model.nodes.keys().zip(model.rotating_nodes());
     nodes.map(|(name, rotates)| (Arc::from(name.as_str()), components(rotates))).collect()
 }

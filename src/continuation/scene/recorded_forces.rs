@@ -24,7 +24,7 @@ impl RecordedForces {
         let rotating = model.rotating_nodes();
         let reactions = |name: &String| {
             let rotates = model.nodes.get_index_of(name).is_some_and(|number| rotating[number]);
-            (Arc::from(name.as_str()), vec![0.0; model.dimension + usize::from(rotates)])
+            (Arc::from(name.as_str()), vec![0.0; model.dimension + if rotates { model.rotations() } else { 0 }])
         };
         Self {
             elements: recorded_elements(request).into_iter().map(named).collect(),

@@ -138,7 +138,7 @@ impl Sizes {
 /// The smallest bending stiffness of the beams.
 fn least_bending(model: &Model) -> Option<f64> {
     let of = |element: &request::Element| match element {
-        request::Element::Beam { bending_stiffness, .. } => Some(*bending_stiffness),
+        request::Element::Beam { bending_stiffness, .. } => Some(bending_stiffness.least()),
         _ => None,
     };
     model.elements.iter().filter_map(of).reduce(f64::min)

@@ -90,7 +90,7 @@ pub(super) fn blocks<'a>(
 }
 
 /// Number of an element's degrees of freedom.
-fn size_of(element: &dyn FiniteElement, dimension: usize) -> usize {
+pub(super) fn size_of(element: &dyn FiniteElement, dimension: usize) -> usize {
     element.nodes().len() * (dimension + element.rotations())
 }
 

@@ -17,6 +17,9 @@ pub trait ElementRun: Any + Debug + Send + Sync {
 
     fn element(&self, index: usize) -> &dyn FiniteElement;
 
+    /// The run with other references of its elements' rotations: see [`FiniteElement::refer`].
+    fn referred(&self, freedoms: usize, references: &[f64]) -> Arc<dyn ElementRun>;
+
     /// Writes strain energies. `freedoms`: the number of an element's degrees of freedom, here and below.
     fn write_energies(&self, first: usize, freedoms: usize, displacements: &[f64], energies: &mut [f64]);
 
@@ -33,13 +36,19 @@ pub trait ElementRun: Any + Debug + Send + Sync {
     fn write_stiffnesses_across(&self, first: usize, freedoms: usize, displacements: &[f64], stiffnesses: &mut [f64]);
 }
 
-impl<E: FiniteElement + 'static> ElementRun for Vec<E> {
+impl<E: FiniteElement + Clone + 'static> ElementRun for Vec<E> {
     fn count(&self) -> usize {
         self.len()
     }
 
     fn element(&self, index: usize) -> &dyn FiniteElement {
         &self[index]
+    }
+
+    fn referred(&self, freedoms: usize, references: &[f64]) -> Arc<dyn ElementRun> {
+        let mut run = self.clone();
+        run.iter_mut().zip(references.chunks_exact(freedoms)).for_each(|(element, own)| element.refer(own));
+        Arc::new(run)
     }
 
     fn write_energies(&self, first: usize, freedoms: usize, displacements: &[f64], energies: &mut [f64]) {
@@ -103,7 +112,7 @@ pub struct ElementList {
 
 impl ElementList {
     /// Adds an element at the end.
-    pub fn push<E: FiniteElement + 'static>(&mut self, element: E) {
+    pub fn push<E: FiniteElement + Clone + 'static>(&mut self, element: E) {
         let is_alike =
             |last: &E| last.nodes().len() == element.nodes().len() && last.rotations() == element.rotations();
         let runs = self.runs.len();
@@ -120,7 +129,7 @@ impl ElementList {
     }
 
     /// Adds elements at the end.
-    pub fn extend<E: FiniteElement + 'static>(&mut self, elements: impl IntoIterator<Item = E>) {
+    pub fn extend<E: FiniteElement + Clone + 'static>(&mut self, elements: impl IntoIterator<Item = E>) {
         elements.into_iter().for_each(|element| self.push(element));
     }
 
@@ -129,6 +138,21 @@ impl ElementList {
         let runs = self.runs.len();
         self.places.extend(other.places.iter().map(|(run, index)| (runs + run, *index)));
         self.runs.extend(other.runs.iter().cloned());
+    }
+
+    /// Gives the elements that have three rotations at a node other references of them: see [`FiniteElement::refer`].
+    /// `references`: values for the degrees of freedom of all elements, one element after the other; `size_of`: the number
+    /// of an element's degrees of freedom.
+    pub(super) fn refer(&mut self, references: &[f64], size_of: impl Fn(&dyn FiniteElement) -> usize) {
+        let mut left = references;
+        for run in &mut self.runs {
+            let freedoms = size_of(run.element(0));
+            let (own, others) = left.split_at(run.count() * freedoms);
+            left = others;
+            if run.element(0).rotations() == 3 {
+                *run = run.referred(freedoms, own);
+            }
+        }
     }
 
     pub fn len(&self) -> usize {
@@ -161,7 +185,7 @@ impl ElementList {
     }
 }
 
-impl<E: FiniteElement + 'static> FromIterator<E> for ElementList {
+impl<E: FiniteElement + Clone + 'static> FromIterator<E> for ElementList {
     fn from_iter<I: IntoIterator<Item = E>>(elements: I) -> Self {
         let mut list = Self::default();
         list.extend(elements);

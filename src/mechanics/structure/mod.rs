@@ -14,6 +14,7 @@ pub mod elements;
 pub mod numbering;
 mod resistance;
 pub mod sparsity;
+pub mod turning_nodes;
 
 use assembly::{ElementAt, ElementBlock, ForceBuffer, StiffnessBuffer};
 use element_list::ElementList;
@@ -25,6 +26,7 @@ use sparsity::Layout;
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
+use turning_nodes::TurningNodes;
 
 /// Largest number of unknowns for which matrices are dense.
 pub const MOST_DENSE: usize = 16;
@@ -54,6 +56,8 @@ pub struct Structure {
     /// Groups of nodes whose degrees of freedom are coupled otherwise than by elements.
     couplings: Vec<Vec<usize>>,
     layout: Option<Arc<Layout>>,
+    /// The nodes that turn freely in space.
+    pub turning: TurningNodes,
 }
 
 impl Structure {
@@ -99,7 +103,9 @@ impl Structure {
             first_at: Vec::new(),
             couplings: Vec::new(),
             layout: None,
+            turning: TurningNodes::default(),
         };
+        structure.turning = TurningNodes::of(&structure.numbering, &structure.unknown_of);
         structure.set_elements(elements);
         match other.filter(|other| other.layout.is_some() && other.has_places_of(&structure)) {
             Some(other) => structure.layout.clone_from(&other.layout),
@@ -134,6 +140,20 @@ impl Structure {
             self.first_freedom.push(self.element_freedoms.len());
         }
         (self.elements, self.elements_at, self.first_at) = (elements, elements_at, first_at);
+    }
+
+    /// Measures the rotations in space from those at the given displacements from now on; a displacement vector of before
+    /// is expressed anew by [`TurningNodes`].
+    pub fn refer(&mut self, displacement: &[f64]) {
+        let totals = self.turning.totals(displacement).into_owned();
+        self.refer_to(&totals);
+    }
+
+    /// Measures the rotations in space from the given total rotation vectors, over all degrees of freedom.
+    pub fn refer_to(&mut self, totals: &[f64]) {
+        let references = self.turning.refer_to(totals);
+        let gathered: Vec<f64> = self.element_freedoms.iter().map(|freedom| references[*freedom]).collect();
+        self.elements.refer(&gathered, |element| assembly::size_of(element, self.dimension));
     }
 
     /// Adds entries to the layout of the tangent for degrees of freedom that are coupled otherwise than by elements;
@@ -242,6 +262,19 @@ impl Structure {
         self.blocks().fold(0.0, |largest: f64, block| {
             largest.max(block.each_force(displacement, &mut buffer, |freedom, value| force[freedom] += value))
         })
+    }
+
+    /// Writes `f_int(u)` over all degrees of freedom with moments in global axes in space, where otherwise they are
+    /// derivatives by the components of rotation vectors.
+    pub fn internal_forces_in_global_axes(&self, displacement: &[f64], force: &mut [f64]) {
+        if self.dimension == 2 || !self.elements.iter().any(|element| element.rotations() > 0) {
+            self.internal_force(displacement, force);
+            return;
+        }
+        let (all, totals) = self.turning.all_placed(&self.numbering, displacement);
+        let mut placed = Self { turning: all, ..self.clone() };
+        placed.refer(displacement);
+        placed.internal_force(&totals, force);
     }
 
     /// The force that an element carries, by the element's place in the input.

@@ -34,6 +34,11 @@ impl Numbering {
         Self::new(dimension, std::iter::repeat_n(0, nodes))
     }
 
+    /// The dimension of the space.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
     /// Number of nodes.
     pub fn nodes(&self) -> usize {
         self.first_of.len() - 1
@@ -68,6 +73,9 @@ impl Numbering {
             (0, _) => "move along x",
             (1, _) => "move along y",
             (2, 3) => "move along z",
+            (3, 3) => "turn about x",
+            (4, 3) => "turn about y",
+            (5, 3) => "turn about z",
             _ => "turn",
         }
     }

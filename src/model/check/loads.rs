@@ -107,6 +107,13 @@ fn moments(scope: &Scope, stage: &Stage, at: &DocumentPlace, mistakes: &mut Mist
     let mut loaded = false;
     for (name, &moment) in &stage.moments {
         let at = at.member(name);
+        if scope.model.dimension != 2 {
+            mistakes.add(&at, || {
+                "moments in space are not taken; `displacements` of a supported rotation, or forces, would do"
+                    .to_owned()
+            });
+            continue;
+        }
         let node = scope.node(name, &at, mistakes);
         let sane = numbers::number(moment, &at, mistakes);
         let Some(node) = node else { continue };
@@ -127,16 +134,16 @@ fn displacements(
         let at = at.member(name);
         let node = scope.node(name, &at, mistakes);
         let dimension = scope.model.dimension;
-        // The rotation may follow where the node has one.
-        let turns = displacement.len() == dimension + 1 && node.is_some_and(|node| scope.has_rotation(node));
-        if !numbers::vector(displacement, if turns { dimension + 1 } else { dimension }, &at, mistakes) {
+        // The rotations may follow where the node has any.
+        let with_rotations = dimension + scope.model.rotations();
+        let turns = displacement.len() == with_rotations && node.is_some_and(|node| scope.has_rotation(node));
+        if !numbers::vector(displacement, if turns { with_rotations } else { dimension }, &at, mistakes) {
             continue;
         }
         let Some(node) = node else { continue };
         for (place, &part) in displacement.iter().enumerate().filter(|(_, part)| **part != 0.0) {
-            let is_turn = place == dimension;
-            let index = if is_turn { 3 } else { place };
-            if if is_turn { scope.turns_freely(node) } else { scope.is_free(node, index) } {
+            let (is_turn, index) = (place >= dimension, scope.component_at(place));
+            if if is_turn { scope.turns_freely_by(node, index) } else { scope.is_free(node, index) } {
                 mistakes.add(&at.index(place), || {
                     let component = COMPONENT_NAMES[index];
                     let name = quoted(name);

@@ -12,7 +12,7 @@ pub(crate) struct Scope<'a> {
     pub model: &'a Model,
     pub at: DocumentPlace<'a>,
     /// For each node, whether x, y, z and the rotation are held.
-    pub supported: Vec<[bool; 4]>,
+    pub supported: Vec<[bool; 6]>,
     /// For each node, whether it has a rotation.
     pub rotating: Vec<bool>,
     /// Diagonal of the box around the well-formed nodes; 0 for a single node.
@@ -21,7 +21,7 @@ pub(crate) struct Scope<'a> {
 
 impl<'a> Scope<'a> {
     pub fn new(model: &'a Model, at: DocumentPlace<'a>) -> Self {
-        let mut supported = vec![[false; 4]; model.nodes.len()];
+        let mut supported = vec![[false; 6]; model.nodes.len()];
         for (name, components) in &model.supports {
             if let Some(held) = model.nodes.get_index_of(name).and_then(|node| supported.get_mut(node)) {
                 for component in components {
@@ -62,9 +62,24 @@ impl<'a> Scope<'a> {
         component < self.model.dimension && self.supported.get(node).is_some_and(|held| !held[component])
     }
 
-    /// Whether the node has a rotation, and it is free.
+    /// Whether the node has rotations, and one of them is free.
     pub fn turns_freely(&self, node: usize) -> bool {
-        self.has_rotation(node) && !self.supported[node][3]
+        self.rotations().any(|rotation| self.turns_freely_by(node, rotation))
+    }
+
+    /// Whether the node has a rotation, by its index among the components, and it is free.
+    pub fn turns_freely_by(&self, node: usize, rotation: usize) -> bool {
+        self.has_rotation(node) && !self.supported[node][rotation]
+    }
+
+    /// The indices of the rotations among the components.
+    pub fn rotations(&self) -> std::ops::Range<usize> {
+        if self.model.dimension == 2 { 5..6 } else { 3..6 }
+    }
+
+    /// The index of a component, by its place among a node's degrees of freedom.
+    pub fn component_at(&self, place: usize) -> usize {
+        if place < self.model.dimension { place } else { self.rotations().start + place - self.model.dimension }
     }
 
     pub fn has_rotation(&self, node: usize) -> bool {

@@ -8,7 +8,7 @@ use crate::model::check::scope::{Scope, proper_name};
 use crate::model::check::structure::{component, component_name};
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::quoted;
-use crate::model::request::{Component, DisplacementBound, Stage, Until};
+use crate::model::request::{DisplacementBound, Stage, Until};
 
 pub(super) fn stages(scope: &Scope, mistakes: &mut Mistakes) {
     let at = scope.at.member("stages");
@@ -82,11 +82,18 @@ fn displacement_bound(
     let dimension = scope.model.dimension;
     let place = bound.component.place(dimension);
     let prescribed = stage.displacements.get(&bound.node).and_then(|displacement| displacement.get(place));
-    let turns = bound.component == Component::Rz;
+    let turns = bound.component.is_rotation();
     let known = known
         && (!turns || node.is_some_and(|node| loads::rotation(scope, node, &bound.node, &component_at, mistakes)));
-    let is_free = |node| if turns { scope.turns_freely(node) } else { scope.is_free(node, place) };
+    let is_free =
+        |node| if turns { scope.turns_freely_by(node, bound.component.index()) } else { scope.is_free(node, place) };
     let moves = |node| is_free(node) || prescribed.is_some_and(|&displacement| displacement != 0.0);
+    if turns && scope.model.dimension == 3 && node.is_some_and(is_free) {
+        mistakes.add(&component_at, || {
+            "a rotation in space that is free ends no stage; a translation, a rotation that the stage's `displacements` move, \
+             or the load would do"
+        });
+    }
     if known && node.is_some_and(|node| !moves(node)) {
         mistakes.add(&component_at, || {
             let component = component_name(bound.component);

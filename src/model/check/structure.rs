@@ -33,7 +33,7 @@ pub(super) fn supports(scope: &Scope, mistakes: &mut Mistakes) {
         for (index, &held) in components.iter().enumerate() {
             let at = at.index(index);
             let known = component(held, scope.model.dimension, &at, mistakes);
-            if let (Component::Rz, true, Some(node)) = (held, known, node) {
+            if let (true, true, Some(node)) = (held.is_rotation(), known, node) {
                 loads::rotation(scope, node, name, &at, mistakes);
             }
             if components.iter().take(index).any(|&earlier| earlier == held) {
@@ -45,17 +45,17 @@ pub(super) fn supports(scope: &Scope, mistakes: &mut Mistakes) {
 
 /// Notes a component that the dimension does not have.
 pub(super) fn component(component: Component, dimension: usize, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
-    let known = if component == Component::Rz { dimension == 2 } else { component.index() < dimension };
+    let known = component.is_in(dimension);
     if !known {
         let name = component_name(component);
-        let others = if dimension == 2 { "`x` or `y`" } else { "`x`, `y` or `z`" };
+        let others = if dimension == 2 { "`x`, `y` or `rz`" } else { "`x`, `y` or `z`" };
         mistakes.add(at, || format!("there is no component {name} in {dimension} dimensions; {others} would do"));
     }
     known
 }
 
 /// By index of the component.
-pub(super) const COMPONENT_NAMES: [&str; 4] = ["`x`", "`y`", "`z`", "`rz`"];
+pub(super) const COMPONENT_NAMES: [&str; 6] = ["`x`", "`y`", "`z`", "`rx`", "`ry`", "`rz`"];
 
 pub(super) fn component_name(component: Component) -> &'static str {
     COMPONENT_NAMES[component.index()]

@@ -5,7 +5,8 @@ use indexmap::IndexMap;
 use crate::model::decode::reader::{Choices, Fields, Input, count, number, numbers, text};
 use crate::model::input::mistakes::Mistakes;
 use crate::model::request::{
-    Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Strain, Units, Until,
+    BendingStiffness, Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Strain, Units,
+    Until,
 };
 
 const MODEL: Fields = Fields {
@@ -24,7 +25,17 @@ const BAR: Fields = Fields {
 
 const BEAM: Fields = Fields {
     what: "a beam",
-    known: &["kind", "nodes", "axial_stiffness", "bending_stiffness", "shear_stiffness", "releases", "name"],
+    known: &[
+        "kind",
+        "nodes",
+        "axial_stiffness",
+        "bending_stiffness",
+        "torsional_stiffness",
+        "orientation",
+        "shear_stiffness",
+        "releases",
+        "name",
+    ],
     later: &[],
 };
 
@@ -96,7 +107,14 @@ const STRAIN: Choices<Strain> = Choices {
 
 const COMPONENT: Choices<Component> = Choices {
     what: "a component",
-    known: &[("x", Component::X), ("y", Component::Y), ("z", Component::Z), ("rz", Component::Rz)],
+    known: &[
+        ("x", Component::X),
+        ("y", Component::Y),
+        ("z", Component::Z),
+        ("rx", Component::Rx),
+        ("ry", Component::Ry),
+        ("rz", Component::Rz),
+    ],
     later: &[],
 };
 
@@ -192,7 +210,9 @@ fn beam(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
     let object = input.object(&BEAM, mistakes)?;
     let nodes = object.required("nodes", mistakes, strings);
     let axial_stiffness = object.required("axial_stiffness", mistakes, number);
-    let bending_stiffness = object.required("bending_stiffness", mistakes, number);
+    let bending_stiffness = object.required("bending_stiffness", mistakes, bending_stiffness);
+    let torsional_stiffness = object.optional("torsional_stiffness", mistakes, number);
+    let orientation = object.optional("orientation", mistakes, numbers);
     let shear_stiffness = object.optional("shear_stiffness", mistakes, number);
     let releases = object
         .with_default("releases", Default::default(), mistakes, |input, mistakes| input.map(mistakes, components));
@@ -201,10 +221,23 @@ fn beam(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
         nodes: nodes?,
         axial_stiffness: axial_stiffness?,
         bending_stiffness: bending_stiffness?,
+        torsional_stiffness: torsional_stiffness?,
+        orientation: orientation?,
         shear_stiffness: shear_stiffness?,
         releases: releases?,
         name: name?,
     })
+}
+
+/// A number, or two in space.
+fn bending_stiffness(input: &Input, mistakes: &mut Mistakes) -> Option<BendingStiffness> {
+    if !input.is_list() {
+        return number(input, mistakes).map(BendingStiffness::Plane);
+    }
+    match numbers(input, mistakes)?[..] {
+        [first, second] => Some(BendingStiffness::Space([first, second])),
+        _ => input.refuse("one number in the plane, or two in space, as `[EI_1, EI_2]`,", mistakes),
+    }
 }
 
 fn rotational_spring(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {

@@ -53,11 +53,18 @@ fn element() -> impl Strategy<Value = Element> {
     let spring = (vec(name(), 0..3), vec(numbers(), 0..4), of(name()))
         .prop_map(|(nodes, stiffness, name)| Element::Spring { nodes, stiffness, name });
     let releases = map(vec(component(), 0..3));
-    let beam = (vec(name(), 0..4), number(), number(), of(number()), releases, of(name())).prop_map(
-        |(nodes, axial_stiffness, bending_stiffness, shear_stiffness, releases, name)| Element::Beam {
+    let bending = prop_oneof![
+        number().prop_map(BendingStiffness::Plane),
+        (number(), number()).prop_map(|(first, second)| BendingStiffness::Space([first, second])),
+    ];
+    let in_space = (of(number()), of(numbers()));
+    let beam = (vec(name(), 0..4), number(), bending, in_space, of(number()), releases, of(name())).prop_map(
+        |(nodes, axial_stiffness, bending_stiffness, in_space, shear_stiffness, releases, name)| Element::Beam {
             nodes,
             axial_stiffness,
             bending_stiffness,
+            torsional_stiffness: in_space.0,
+            orientation: in_space.1,
             shear_stiffness,
             releases,
             name,

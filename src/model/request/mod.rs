@@ -24,7 +24,9 @@ pub use record::{
     ContactRange, ElementReference, ForceRange, Record, RecordedContact, RecordedContacts, RecordedElements,
     RecordedSupports,
 };
-pub use structure::{Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Units, Until};
+pub use structure::{
+    BendingStiffness, Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Units, Until,
+};
 
 /// A model and how to trace it.
 #[warn(missing_docs)]

@@ -3,7 +3,7 @@
 use crate::output::table::point_kind;
 use crate::output::vtk::arrays::{DataArray, text_array, write_texts};
 use crate::output::vtk::grid::Grid;
-use crate::result::increment::{BeamEndForces, ElementState, Increment, Status};
+use crate::result::increment::{ElementState, Increment, Status};
 use crate::result::nodal_values::NodalValues;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
@@ -149,16 +149,16 @@ impl Grid {
     fn force_arrays(&self, increment: &Increment) -> Vec<DataArray> {
         let cells = self.number_of_elements;
         let (mut axial, mut forces) = (vec![f64::NAN; cells], vec![f64::NAN; 3 * cells]);
-        let mut at_ends =
-            BEAM_FORCES.map(|_| if self.has_beam_forces { vec![f64::NAN; 2 * cells] } else { Vec::new() });
+        let names = if self.has_beam_forces { beam_forces(self.dimension) } else { &[] };
+        let mut at_ends: Vec<Vec<f64>> = names.iter().map(|_| vec![f64::NAN; 2 * cells]).collect();
         for state in &increment.elements {
             let Ok(place) = usize::try_from(state.element) else { continue };
             if let (Some(value), Some(cell)) = (state.axial_force, axial.get_mut(place)) {
                 *cell = value;
             }
             for (values, end) in at_ends.iter_mut().zip(of_ends(state)) {
-                if let (Some(own), Some(cell)) = (end, values.get_mut(2 * place..2 * place + 2)) {
-                    cell.copy_from_slice(&own);
+                if let Some(cell) = values.get_mut(2 * place..2 * place + 2) {
+                    cell.copy_from_slice(&end);
                 }
             }
             if let (Some(force), Some(cell)) = (&state.force, forces.get_mut(3 * place..3 * place + 3)) {
@@ -166,10 +166,7 @@ impl Grid {
             }
         }
         let mut arrays = Vec::new();
-        if self.has_beam_forces {
-            let named = BEAM_FORCES.into_iter().zip(&at_ends);
-            arrays.extend(named.map(|(name, values)| DataArray::numbers(name, 2, values)));
-        }
+        arrays.extend(names.iter().zip(&at_ends).map(|(name, values)| DataArray::numbers(name, 2, values)));
         if self.has_bar_forces {
             arrays.push(DataArray::numbers("axial_force", 1, &axial));
         }
@@ -182,11 +179,19 @@ impl Grid {
 
 /// Cell data of beams, each with the values at the first and at the last node.
 const BEAM_FORCES: [&str; 3] = ["beam_axial_force", "shear_force", "bending_moment"];
+const BEAM_FORCES_IN_SPACE: [&str; 6] =
+    ["beam_axial_force", "shear_force_1", "shear_force_2", "torsional_moment", "bending_moment_1", "bending_moment_2"];
 
-/// What [`BEAM_FORCES`] names, of an element; `None` where it is no beam.
-fn of_ends(state: &ElementState) -> [Option<[f64; 2]>; 3] {
-    let own = |of: fn(&BeamEndForces) -> f64| state.ends.as_ref().map(|ends| [of(&ends[0]), of(&ends[1])]);
-    [own(|end| end.axial_force), own(|end| end.shear_force), own(|end| end.bending_moment)]
+fn beam_forces(dimension: usize) -> &'static [&'static str] {
+    if dimension == 2 { &BEAM_FORCES } else { &BEAM_FORCES_IN_SPACE }
+}
+
+/// What [`beam_forces`] names, of an element, one pair of values for each name; none where it is no beam.
+fn of_ends(state: &ElementState) -> impl Iterator<Item = [f64; 2]> {
+    state
+        .ends
+        .into_iter()
+        .flat_map(|[first, last]| first.values().zip(last.values()).map(|(a, b)| [a, b]).collect::<Vec<_>>())
 }
 
 /// Three components; the third is 0 in the plane.

@@ -70,9 +70,9 @@ class Model:
 
     def support(self, nodes: Union[Node, Iterable[Node]], components: Union[str, Iterable[str]] = "") -> None:
         """Holds components such as `"xy"` of a node or of several; all displacements unless given. In the plane
-        `["x", "y", "rz"]` holds the rotation of a beam's node, too."""
-        known = ["x", "y", "z"] if self.dimension == 3 else ["x", "y", "rz"]
-        held = ["rz"] if components == "rz" else list(components) or list("xyz"[: self.dimension])
+        `["x", "y", "rz"]` holds the rotation of a beam's node, too; in space there are `rx`, `ry` and `rz`."""
+        known = ["x", "y", "z", "rx", "ry", "rz"] if self.dimension == 3 else ["x", "y", "rz"]
+        held = [components] if components in known else list(components) or list("xyz"[: self.dimension])
         unknown = [component for component in held if component not in known]
         if unknown:
             raise ValueError(f"{unknown[0]!r} is no component; known are {', '.join(known)}")
@@ -126,12 +126,14 @@ class Model:
         return self._element({"kind": "spring", "nodes": nodes, "stiffness": matrix, **plain(more)})
 
     def beam(
-        self, nodes: Sequence[Node], axial_stiffness: float, bending_stiffness: float, **more: Any
+        self, nodes: Sequence[Node], axial_stiffness: float, bending_stiffness: Union[float, Vector], **more: Any
     ) -> int:
-        """Adds a beam in the plane along two or three nodes, with the stiffnesses EA and EI; returns its place among the
-        elements.
+        """Adds a beam along two or three nodes, with the stiffnesses EA and EI; returns its place among the elements.
 
-        `more`: `shear_stiffness`, `releases` (such as `{"knee": ["rz"]}`), `name`.
+        In space `bending_stiffness` is two numbers, about axes 1 and 2, and `torsional_stiffness` and `orientation`, a
+        vector whose part across the beam is axis 1, are required.
+
+        `more`: `shear_stiffness`, in the plane `releases` (such as `{"knee": ["rz"]}`), `name`.
         """
         named = [self.node_name(node) for node in nodes]
         own = {"axial_stiffness": axial_stiffness, "bending_stiffness": bending_stiffness, **more}

@@ -74,7 +74,7 @@ class Path:
         row = {name: increment[name] for name in ("index", "stage", "load_factor", "arc_length", "step")}
         point = increment["point"]
         row.update(point=point["kind"], bifurcation=point["bifurcation"], event=point["event"])
-        with_rotation = axes if self.dimension == 3 else [*axes, "rz"]
+        with_rotation = [*axes, "rx", "ry", "rz"] if self.dimension == 3 else [*axes, "rz"]
         for node, vector in increment["displacements"].items():
             row.update(zip((f"{node}.{axis}" for axis in with_rotation), vector))
         for contact in increment["contacts"]:
@@ -94,7 +94,13 @@ class Path:
             if "force" in element:
                 row.update(zip((f"{own}.force.{axis}" for axis in axes), element["force"]))
             for end, forces in zip(("start", "end"), element.get("ends") or []):
-                row.update((f"{own}.{end}.{name}", value) for name, value in forces.items())
+                for name, value in forces.items():
+                    # In space there are two of some, which the table numbers.
+                    if isinstance(value, list):
+                        one = name[: -len("s")]
+                        row.update((f"{own}.{end}.{one}.{axis}", part) for axis, part in enumerate(value, 1))
+                    else:
+                        row[f"{own}.{end}.{name}"] = value
             if "moment" in element:
                 row[f"{own}.moment"] = element["moment"]
         for node, vector in (increment.get("supports") or {}).items():

@@ -3,6 +3,7 @@
 pub mod bar;
 pub mod beam;
 pub mod rotational_spring;
+pub mod space_beam;
 pub mod spring;
 
 use std::fmt::Debug;
@@ -27,6 +28,10 @@ pub trait FiniteElement: Debug + Send + Sync {
     fn first_rotation_at(&self, _place: usize) -> usize {
         0
     }
+
+    /// Takes other rotation vectors, among values for all of the element's degrees of freedom, as those from which the
+    /// rotations of its nodes are measured; for elements with rotations in space.
+    fn refer(&mut self, _references: &[f64]) {}
 
     /// Strain energy `W`.
     fn energy(&self, displacement: &[f64]) -> f64;
@@ -88,6 +93,8 @@ pub enum Resultants {
     Force([f64; 3]),
     /// At both ends of a plane beam.
     Ends([BeamEnd; 2]),
+    /// At both ends of a beam in space.
+    SpaceEnds([SpaceBeamEnd; 2]),
     /// Of a rotational spring on the rotation of its first node relative to the second, or to the ground.
     Moment(f64),
 }
@@ -102,6 +109,20 @@ pub struct BeamEnd {
     pub shear_force: f64,
     /// Positive where the rotation grows along the beam.
     pub bending_moment: f64,
+}
+
+/// The force and the moment in a beam in space at one of its ends, in the axes of the cross-section there: `t` along the
+/// beam, axis 1 and axis 2; both act on the side that `t` leaves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpaceBeamEnd {
+    /// Along `t`, tension positive.
+    pub axial_force: f64,
+    /// Along axes 1 and 2.
+    pub shear_forces: [f64; 2],
+    /// About `t`.
+    pub torsional_moment: f64,
+    /// About axes 1 and 2.
+    pub bending_moments: [f64; 2],
 }
 
 /// A summand `k c cᵀ` of the tangent: the stiffness `k` against motions along `c`.

@@ -13,26 +13,43 @@ pub enum Component {
     Y,
     /// Along the third axis; in space only.
     Z,
-    /// Rotation about the third axis, counter-clockwise (radians); in the plane, at nodes with beams.
+    /// First component of the rotation vector (radians); in space, at nodes with beams.
+    Rx,
+    /// Second component of the rotation vector (radians); in space, at nodes with beams.
+    Ry,
+    /// In the plane, rotation about the third axis, counter-clockwise (radians); in space, third component of the
+    /// rotation vector. At nodes with beams.
     Rz,
 }
 
 impl Component {
-    /// 0, 1 or 2 along the axes; 3 for the rotation.
+    /// 0, 1 or 2 along the axes; 3, 4 or 5 for the rotations about them.
     pub fn index(self) -> usize {
         match self {
             Self::X => 0,
             Self::Y => 1,
             Self::Z => 2,
-            Self::Rz => 3,
+            Self::Rx => 3,
+            Self::Ry => 4,
+            Self::Rz => 5,
         }
     }
 
-    /// The place among the degrees of freedom of a node: the rotation follows the directions of the space.
+    /// The place among the degrees of freedom of a node: the rotations follow the directions of the space.
     pub fn place(self, dimension: usize) -> usize {
         match self {
-            Self::Rz => dimension,
-            Self::X | Self::Y | Self::Z => self.index(),
+            Self::Rz if dimension == 2 => dimension,
+            _ => self.index(),
         }
+    }
+
+    /// Whether it is a rotation.
+    pub fn is_rotation(self) -> bool {
+        self.index() >= 3
+    }
+
+    /// Whether a space of this dimension has it.
+    pub fn is_in(self, dimension: usize) -> bool {
+        if dimension == 2 { matches!(self, Self::X | Self::Y | Self::Rz) } else { true }
     }
 }

@@ -44,7 +44,7 @@ pub enum Element {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         name: Option<String>,
     },
-    /// A geometrically exact beam in the plane, which stretches, bends and shears; free of stress as drawn.
+    /// A geometrically exact beam, which stretches, bends and shears, in space also twists; free of stress as drawn.
     Beam {
         /// Two node names, or three in order along the beam: the beam then follows the circle through them.
         #[cfg_attr(feature = "server", schema(min_items = 2, max_items = 3))]
@@ -52,14 +52,22 @@ pub enum Element {
         /// EA (force), positive.
         #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0))]
         axial_stiffness: f64,
-        /// EI (force times length squared), positive.
+        /// EI (force times length squared), positive; in space `[EI_1, EI_2]`, against bending about axes 1 and 2.
+        bending_stiffness: BendingStiffness,
+        /// In space, GJ (force times length squared), positive.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0))]
-        bending_stiffness: f64,
-        /// GA of the area in shear (force), positive; absent: the beam does not shear.
+        torsional_stiffness: Option<f64>,
+        /// In space, a vector not parallel to the beam: its part across the beam (of three nodes: across the tangent at the
+        /// second) is axis 1 of the cross-section. Axis 2 is a quarter turn about the beam's direction from it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[cfg_attr(feature = "server", schema(min_items = 3, max_items = 3))]
+        orientation: Option<Vec<f64>>,
+        /// GA of the area in shear (force), positive, in space along both axes; absent: the beam does not shear.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0))]
         shear_stiffness: Option<f64>,
-        /// Name of an end node to what is released there: `rz` makes a hinge between this beam and the node.
+        /// In the plane, name of an end node to what is released there: `rz` makes a hinge between this beam and the node.
         #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
         releases: IndexMap<String, Vec<Component>>,
         /// By which results and `analysis.record` refer to the element; one element has it.
@@ -78,6 +86,27 @@ pub enum Element {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         name: Option<String>,
     },
+}
+
+/// The stiffness of a beam against bending (force times length squared).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(untagged)]
+pub enum BendingStiffness {
+    /// In the plane.
+    Plane(f64),
+    /// In space, about axes 1 and 2.
+    Space([f64; 2]),
+}
+
+impl BendingStiffness {
+    /// The smallest.
+    pub fn least(self) -> f64 {
+        match self {
+            Self::Plane(stiffness) => stiffness,
+            Self::Space([first, second]) => first.min(second),
+        }
+    }
 }
 
 impl Element {
@@ -134,7 +163,38 @@ impl Element {
         Self::Beam {
             nodes: nodes.map(Into::into).into(),
             axial_stiffness,
-            bending_stiffness,
+            bending_stiffness: BendingStiffness::Plane(bending_stiffness),
+            torsional_stiffness: None,
+            orientation: None,
+            shear_stiffness: None,
+            releases: IndexMap::new(),
+            name: None,
+        }
+    }
+
+    /// A beam in space through two or three nodes, of axial stiffness EA (force), bending stiffnesses EI about axes 1 and 2
+    /// and torsional stiffness GJ (force times length squared), which does not shear. Axis 1 is the part of `orientation`
+    /// across the beam.
+    ///
+    /// ```
+    /// use arcslip::Element;
+    ///
+    /// let strip = Element::beam_in_space(["clamp", "tip"], 1.0e6, [40.0, 0.1], 0.15, [0.0, 1.0, 0.0]);
+    /// assert_eq!(strip.nodes(), ["clamp", "tip"]);
+    /// ```
+    pub fn beam_in_space<const NODES: usize>(
+        nodes: [impl Into<String>; NODES],
+        axial_stiffness: f64,
+        bending_stiffness: [f64; 2],
+        torsional_stiffness: f64,
+        orientation: [f64; 3],
+    ) -> Self {
+        Self::Beam {
+            nodes: nodes.map(Into::into).into(),
+            axial_stiffness,
+            bending_stiffness: BendingStiffness::Space(bending_stiffness),
+            torsional_stiffness: Some(torsional_stiffness),
+            orientation: Some(orientation.into()),
             shear_stiffness: None,
             releases: IndexMap::new(),
             name: None,

@@ -12,7 +12,7 @@ mod obstacle;
 mod stage;
 
 pub use component::Component;
-pub use element::Element;
+pub use element::{BendingStiffness, Element};
 pub use model::{Model, Units};
 pub use obstacle::{Contact, Obstacle, Side};
 pub use stage::{DisplacementBound, Stage, Until};

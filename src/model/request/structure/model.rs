@@ -53,7 +53,12 @@ pub struct Units {
 }
 
 impl Model {
-    /// For each node, whether it has a rotation: where a beam is joined to it rigidly, or a rotational spring acts on it.
+    /// Number of rotations of a node that has any: 1 in the plane, 3 in space.
+    pub fn rotations(&self) -> usize {
+        if self.dimension == 3 { 3 } else { 1 }
+    }
+
+    /// For each node, whether it has rotations: where a beam is joined to it rigidly, or a rotational spring acts on it.
     pub fn rotating_nodes(&self) -> Vec<bool> {
         let mut rotating = vec![false; self.nodes.len()];
         for element in &self.elements {

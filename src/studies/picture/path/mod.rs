@@ -105,6 +105,8 @@ fn name(component: Component) -> &'static str {
         Component::X => "x",
         Component::Y => "y",
         Component::Z => "z",
+        Component::Rx => "rx",
+        Component::Ry => "ry",
         Component::Rz => "rz",
     }
 }

@@ -30,12 +30,13 @@ class Reading {
   }
 
   hasComponent(name) {
-    return ["x", "y", ...(this.dimension === 2 ? ["rz"] : ["z"])].includes(name);
+    return ["x", "y", ...(this.dimension === 2 ? ["rz"] : ["z", "rx", "ry", "rz"])].includes(name);
   }
 
-  /** In the plane a rotation may come last. */
+  /** Rotations may come last: one in the plane, three in space. */
   motionOr(value) {
-    return this.dimension === 2 && Array.isArray(value) && value.length === 3 ? this.vectorOr(value.slice(0, 2)) : this.vectorOr(value);
+    const turns = Array.isArray(value) && value.length === (this.dimension === 2 ? 3 : 6);
+    return this.vectorOr(turns ? value.slice(0, this.dimension) : value);
   }
 
   vectorOr(value) {

@@ -21,14 +21,20 @@ const MEMBERS = {
 /** The same of a beam's ends. */
 const AT_ENDS = {
   axial_force: MEMBERS.axial_force, shear_force: ["shear force", "force"], bending_moment: ["bending moment", ["force", "length"]],
+  shear_forces: ["shear force", "force"], torsional_moment: ["torsional moment", ["force", "length"]],
+  bending_moments: ["bending moment", ["force", "length"]],
 };
+const ABOUT_AXES = ["shear_forces", "bending_moments"];
 const ENDS = ["first", "last"];
 
-/** The nodes that have a rotation, last among their displacements: in the plane those of beams and rotational springs. */
+/** The nodes that have rotations, last among their displacements: those of beams and rotational springs. */
 export function rotatingNodes(model) {
   const turned = (model.elements ?? []).filter(({ kind }) => kind === "beam" || kind === "rotational_spring");
-  return new Set(model.dimension === 2 ? turned.flatMap(({ nodes }) => nodes) : []);
+  return new Set(turned.flatMap(({ nodes }) => nodes));
 }
+
+/** The rotations that a node may have: the place among its displacements, and the name. */
+export const rotations = (model) => (model.dimension === 2 ? [[2, "rz"]] : [[3, "rx"], [4, "ry"], [5, "rz"]]);
 
 export const escaped = (name) => name.replaceAll("~", "~0").replaceAll("/", "~1").replaceAll(",", "~2");
 export const unescaped = (step) => step.replaceAll("~2", ",").replaceAll("~1", "/").replaceAll("~0", "~");
@@ -48,7 +54,7 @@ function partsOf(name) {
 /** The node and the component of a column; null for other columns. */
 export function ofDisplacement(name) {
   const { of, key, steps } = partsOf(name);
-  return of === "displacements" && steps.length === 1 && /^[012]$/.test(steps[0])
+  return of === "displacements" && steps.length === 1 && /^[0-5]$/.test(steps[0])
     ? { node: key, component: Number(steps[0]) } : null;
 }
 
@@ -85,11 +91,14 @@ export function isRecorded(name, request) {
   if (of === "diagnostics" || of === "measure") return /^[a-z_]+$/.test(key ?? "") && steps.length === 0;
   const parts = recordedParts(request)[of] ?? [];
   if (of === "displacements" || of === "supports") {
-    const many = model.dimension + (rotatingNodes(model).has(key) ? 1 : 0);
+    const many = model.dimension + (rotatingNodes(model).has(key) ? rotations(model).length : 0);
     return parts.includes(key) && steps.length === 1 && isComponent(steps[0], many);
   }
   if (!(of === "elements" || of === "contacts") || !(Number(key) < parts.length)) return false;
-  if (steps[0] === "ends") return steps.length === 3 && steps[1] in ENDS && steps[2] in AT_ENDS;
+  if (steps[0] === "ends") {
+    const both = ABOUT_AXES.includes(steps[2]);
+    return steps.length === (both ? 4 : 3) && steps[1] in ENDS && steps[2] in AT_ENDS && (!both || /^[01]$/.test(steps[3]));
+  }
   return steps[0] in MEMBERS && (steps.length === 1 || (steps.length === 2 && isComponent(steps[1])));
 }
 
@@ -115,9 +124,10 @@ function wordsOf(name, request) {
   if (name in PLAIN) return PLAIN[name];
   const { of, key, steps } = partsOf(name);
   const component = COMPONENTS[steps.at(-1)] ?? "";
-  const isRotation = request?.model.dimension === 2 && steps.at(-1) === "2";
-  if (of === "displacements" && isRotation) return `rotation of ${key}`;
-  if (of === "supports" && isRotation) return `moment of the support of ${key}`;
+  const turn = request ? rotations(request.model).find(([place]) => String(place) === steps.at(-1))?.[1] : undefined;
+  const about = turn && request.model.dimension === 3 ? ` ${turn}` : "";
+  if (of === "displacements" && turn) return `rotation${about} of ${key}`;
+  if (of === "supports" && turn) return `moment${about} of the support of ${key}`;
   if (of === "displacements") return `displacement ${component} of ${key}`;
   if (of === "supports") return `reaction ${component} of the support of ${key}`;
   if (of === "applied_forces") return `applied force ${COMPONENTS[key]}, sum`;
@@ -126,7 +136,7 @@ function wordsOf(name, request) {
   const place = request ? recordedParts(request)[of]?.[Number(key)] ?? Number(key) : Number(key);
   const model = request?.model ?? {};
   const whose = of === "elements" ? elementWords(model, place) : contactWords(model, place);
-  if (steps[0] === "ends") return `${AT_ENDS[steps[2]]?.[0] ?? steps[2]} at the ${ENDS[steps[1]]} node of ${whose}`;
+  if (steps[0] === "ends") return `${AT_ENDS[steps[2]]?.[0] ?? steps[2]}${steps[3] === undefined ? "" : ` ${Number(steps[3]) + 1}`} at the ${ENDS[steps[1]]} node of ${whose}`;
   return `${MEMBERS[steps[0]]?.[0] ?? steps[0]}${along(steps)} of ${whose}`;
 }
 
@@ -140,7 +150,7 @@ function along([member, component]) {
 /** The powers of units that a quantity has. */
 function powersOf(name, request) {
   const { of, steps } = partsOf(name);
-  const isRotation = request?.model.dimension === 2 && steps.at(-1) === "2";
+  const isRotation = request && rotations(request.model).some(([place]) => String(place) === steps.at(-1));
   if (of === "displacements" && isRotation) return [];
   if (of === "supports" && isRotation) return ["force", "length"];
   if (of === "energy") return ["force", "length"];

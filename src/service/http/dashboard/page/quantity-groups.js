@@ -1,6 +1,6 @@
 // All quantities that a job records, in groups, to choose from.
 
-import { contactWords, displacement, elementWords, escaped, PLAIN, quantityWords, recordedParts, rotatingNodes } from "./quantities.js";
+import { contactWords, displacement, elementWords, escaped, PLAIN, quantityWords, recordedParts, rotatingNodes, rotations } from "./quantities.js";
 
 const LETTERS = "xyz";
 const ACCURACY = [
@@ -19,13 +19,14 @@ export function quantityGroups(request) {
   const rotating = rotatingNodes(model);
   const components = [...LETTERS.slice(0, model.dimension)];
   const axes = (before, words) => components.map((letter, place) => [`${before}${place}`, `${words}${letter}`]);
+  const turns = (word) => rotations(model).map(([place, name]) => [String(place), model.dimension === 2 ? word : `${word} ${name}`]);
   const plain = (names) => names.map((name) => [name, quantityWords(name)]);
   return [
     { title: "Path", parts: plain(["load_factor", "arc_length", "step", "index"]) },
     { title: "Energies", parts: plain(Object.keys(PLAIN).filter((name) => name.startsWith("/energy/"))) },
     { title: "Displacements", of: "displacements", parts: axes("", ""), ...namedBy(recorded.displacements) },
-    { title: "Rotations", of: "displacements", parts: [["2", "rotation"]], ...namedBy(recorded.displacements.filter((name) => rotating.has(name))) },
-    { title: "Moments of supports", of: "supports", parts: [["2", "moment"]], ...namedBy(recorded.supports.filter((name) => rotating.has(name))) },
+    { title: "Rotations", of: "displacements", parts: turns("rotation"), ...namedBy(recorded.displacements.filter((name) => rotating.has(name))) },
+    { title: "Moments of supports", of: "supports", parts: turns("moment"), ...namedBy(recorded.supports.filter((name) => rotating.has(name))) },
     { title: "Reactions of supports", of: "supports", parts: axes("", "reaction "), ...namedBy(recorded.supports) },
     ...elementGroups(recorded.elements ?? [], model, axes),
     ...contactGroups(recorded.contacts ?? [], model, axes),
@@ -50,8 +51,14 @@ function elementGroups(places, model, axes) {
     group("Forces of springs", "spring", axes("force/", "force ")),
     group("Forces of beams", "beam", [["first", 0], ["last", 1]].flatMap(([end, place]) => [
       [`ends/${place}/axial_force`, `axial force at the ${end} node`],
-      [`ends/${place}/shear_force`, `shear force at the ${end} node`],
-      [`ends/${place}/bending_moment`, `bending moment at the ${end} node`],
+      ...(model.dimension === 2 ? [
+        [`ends/${place}/shear_force`, `shear force at the ${end} node`],
+        [`ends/${place}/bending_moment`, `bending moment at the ${end} node`],
+      ] : [
+        ...[0, 1].map((axis) => [`ends/${place}/shear_forces/${axis}`, `shear force ${axis + 1} at the ${end} node`]),
+        [`ends/${place}/torsional_moment`, `torsional moment at the ${end} node`],
+        ...[0, 1].map((axis) => [`ends/${place}/bending_moments/${axis}`, `bending moment ${axis + 1} at the ${end} node`]),
+      ]),
     ])),
     group("Moments of rotational springs", "rotational_spring", [["moment", "moment"]]),
   ];

@@ -46,6 +46,7 @@ export class ElementDrawing {
       const unstressed = isBeam ? beamShape(model, item, before, before.map(() => 0)) : before;
       if (!detail.isLarge) traces.lines("undeformed", [unstressed], this.faint);
       if (isBeam) this.beam(item, ends, forces.of[number], named);
+      else if (item.kind === "beam") this.spaceBeam(ends, forces.of[number], named);
       else if (item.kind !== "spring") this.bar(ends, axial, named, forces.of[number]);
       else traces.element("spring", ends, this.spring, [...named, `force ${components(force ?? [], units.force)}`]);
     }
@@ -73,6 +74,17 @@ export class ElementDrawing {
       const name = item.nodes.at(end);
       if (item.releases?.[name]?.includes("rz")) this.hinge(shape.at(end), shape.at(beside), [...named, `hinge at ${name}`]);
     });
+  }
+
+  /** In space, straight from node to node. */
+  spaceBeam(places, found, named) {
+    const { units } = this;
+    const all = (of) => found.ends.flatMap(of).map((value) => moment(value, units)).join(", ");
+    const atEnds = found.ends ? [
+      `torsional moments ${all((end) => end.torsional_moment)} at its ends`,
+      `bending moments ${all((end) => end.bending_moments)} at its ends`,
+    ] : [];
+    this.bar(places, found.axial, [...named, ...atEnds], found);
   }
 
   /** A circle beside the node, on the beam that is hinged to it. */
