@@ -11,6 +11,7 @@
 pub mod assembly;
 pub mod element_list;
 pub mod elements;
+pub mod mixed_iteration;
 pub mod numbering;
 mod resistance;
 pub mod sparsity;
@@ -54,6 +55,8 @@ pub struct Structure {
     /// Groups of nodes whose degrees of freedom are coupled otherwise than by elements.
     couplings: Vec<Vec<usize>>,
     layout: Option<Arc<Layout>>,
+    /// Whether an element has forces that are variables of the iteration.
+    independent_forces: bool,
 }
 
 impl Structure {
@@ -99,6 +102,7 @@ impl Structure {
             first_at: Vec::new(),
             couplings: Vec::new(),
             layout: None,
+            independent_forces: elements.iter().any(|element| element.independent_forces() > 0),
         };
         structure.set_elements(elements);
         match other.filter(|other| other.layout.is_some() && other.has_places_of(&structure)) {
@@ -199,6 +203,11 @@ impl Structure {
     /// The elements in blocks of one kind.
     fn blocks(&self) -> impl Iterator<Item = ElementBlock<'_>> {
         assembly::blocks(&self.elements, self.dimension, &self.element_freedoms)
+    }
+
+    /// Whether an element has forces that are variables of the iteration: see [`mixed_iteration`].
+    pub fn has_independent_forces(&self) -> bool {
+        self.independent_forces
     }
 
     /// Whether the forces of all elements are linear in the displacements.
