@@ -8,6 +8,8 @@ use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, SuppressedMot
 use crate::mechanics::problem::contact_jacobian;
 use crate::mechanics::problem::node_contact_forces::force;
 use crate::mechanics::problem::state::{Rate, State};
+use crate::mechanics::structure::Structure;
+use crate::mechanics::structure::elements::FiniteElement;
 use nalgebra::DMatrix;
 
 /// Whether the stretching stiffness of the elements is within the matrix or kept apart.
@@ -29,21 +31,40 @@ pub(crate) fn assemble_dense(system: &ModeSystem<'_>, iterate: &Iterate, kind: K
 
 pub(super) fn assemble_parts(system: &ModeSystem<'_>, iterate: &Iterate, kind: Kind, stretch: Stretch) -> DMatrix<f64> {
     let structure = system.loading.structure;
-    let state = &iterate.state;
     let mut matrix = DMatrix::zeros(system.size, system.size);
     let support_rate = |freedom: usize| system.loading.support_rate(freedom);
     let add = |row: usize, column: usize, value: f64| matrix[(row, column)] += value;
     match stretch {
-        Stretch::Within => {
-            structure.each_stiffness(&state.displacement, &mut structure.over_unknowns(support_rate, add));
-        }
-        Stretch::Apart => {
-            structure.each_stiffness_across(&state.displacement, &mut structure.over_unknowns(support_rate, add));
-        }
+        Stretch::Within => each_stiffness(structure, iterate, &mut structure.over_unknowns(support_rate, add)),
+        Stretch::Apart => each_stiffness_across(structure, iterate, &mut structure.over_unknowns(support_rate, add)),
     }
     add_loads_and_contacts(system, iterate, kind, &mut matrix);
     add_suppressed(system, &mut matrix);
     matrix
+}
+
+/// Calls `add(row, column, value)` for every entry of the tangent at an iterate.
+fn each_stiffness(structure: &Structure, iterate: &Iterate, add: &mut impl FnMut(usize, usize, f64)) {
+    let displacement = &iterate.state.displacement;
+    match &iterate.forces {
+        None => structure.each_stiffness(displacement, add),
+        Some(forces) => structure.each_mixed_stiffness(
+            displacement,
+            forces,
+            |element, own, out| element.write_stiffness(own, out),
+            add,
+        ),
+    }
+}
+
+/// As [`each_stiffness`], without the summands that `Structure::stretching` lists.
+fn each_stiffness_across(structure: &Structure, iterate: &Iterate, add: &mut impl FnMut(usize, usize, f64)) {
+    let displacement = &iterate.state.displacement;
+    let across = |element: &dyn FiniteElement, own: &[f64], out: &mut [f64]| element.write_stiffness_across(own, out);
+    match &iterate.forces {
+        None => structure.each_stiffness_across(displacement, add),
+        Some(forces) => structure.each_mixed_stiffness(displacement, forces, across, add),
+    }
 }
 
 /// Adds `Σ_j ψ_j φ_jᵀ` of the suppressed motions.
@@ -80,7 +101,7 @@ pub(crate) fn assemble_sparse(system: &ModeSystem<'_>, iterate: &Iterate, kind: 
     let unknowns = structure.unknowns();
     let mut matrix = Bordered::new(layout.pattern.clone(), system.size - unknowns);
     let mut places = layout.places();
-    structure.each_stiffness(&iterate.state.displacement, &mut |row, column, value| match places.next().flatten() {
+    each_stiffness(structure, iterate, &mut |row, column, value| match places.next().flatten() {
         Some(place) => matrix.add_at(place, value),
         None => {
             if let (Some(row), None) = (structure.unknown_of[row], structure.unknown_of[column]) {

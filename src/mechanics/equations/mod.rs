@@ -36,6 +36,7 @@ use crate::mechanics::multi_contact::spatial::{Edge, beside};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_contact_forces::{free_directions, total_force};
 use crate::mechanics::problem::state::State;
+use crate::mechanics::structure::mixed_iteration::IndependentForces;
 use nalgebra::DVector;
 use smallvec::SmallVec;
 use std::cell::OnceCell;
@@ -89,6 +90,8 @@ pub(crate) enum Kind {
 pub(crate) struct Iterate {
     pub state: State,
     pub directions: Vec<Vector>,
+    /// Forces in elements that are variables of the iteration; `None`: they are those of the displacements.
+    pub forces: Option<IndependentForces>,
 }
 
 impl Iterate {
@@ -96,6 +99,7 @@ impl Iterate {
     pub fn set_to(&mut self, other: &Self) {
         self.state.set_to(&other.state);
         self.directions.clone_from(&other.directions);
+        self.forces.clone_from(&other.forces);
     }
 }
 
@@ -249,7 +253,13 @@ impl<'a> ModeSystem<'a> {
         } else {
             Vec::new()
         };
-        Iterate { state, directions }
+        Iterate { state, directions, forces: None }
+    }
+
+    /// Lets the forces in elements vary in an iteration from a guess, where the elements have such forces. They start as
+    /// those at the anchor: the displacements of a guess may strain stiff elements far more than the solution's do.
+    pub(crate) fn begin_iteration(&self, guess: &mut Iterate) {
+        guess.forces = self.loading.structure.independent_forces(&self.anchor.displacement);
     }
 
     /// Resolves the force of a sticking contact in the frame at the anchor. A guess may have moved the sticking node on

@@ -98,7 +98,8 @@ pub(crate) fn rate_into(
 /// Subtracts a Newton correction from an iterate, and writes it to `correction` (see [`no_rate`]).
 pub(crate) fn correct_by(system: &ModeSystem<'_>, iterate: &mut Iterate, values: &DVector<f64>, correction: &mut Rate) {
     rate_into(system, iterate, values, Kind::Increment, correction);
-    let Iterate { state, directions } = iterate;
+    let before = iterate.forces.as_ref().map(|_| iterate.state.displacement.clone());
+    let Iterate { state, directions, .. } = iterate;
     state.advance(correction, -1.0);
     if system.has_tracks() {
         residual::place_exactly(system, state);
@@ -111,6 +112,9 @@ pub(crate) fn correct_by(system: &ModeSystem<'_>, iterate: &mut Iterate, values:
         }
     }
     residual::make_consistent(system, iterate);
+    if let (Some(before), Some(forces)) = (before, &mut iterate.forces) {
+        system.loading.structure.advance_independent_forces(&before, &iterate.state.displacement, forces);
+    }
 }
 
 /// The iterate after a Newton correction.

@@ -60,6 +60,16 @@ pub(crate) fn write_residual(
     (largest, scale)
 }
 
+/// Turns the residual of equilibrium, where forces in elements are variables of the iteration, into that of the mixed
+/// form, from which the correction follows. `force` is work memory over all degrees of freedom.
+pub(crate) fn make_mixed(system: &ModeSystem<'_>, iterate: &Iterate, values: &mut DVector<f64>, force: &mut [f64]) {
+    let Some(forces) = &iterate.forces else { return };
+    let structure = system.loading.structure;
+    force.fill(0.0);
+    structure.add_mixed_residual(&iterate.state.displacement, forces, force);
+    values.iter_mut().zip(&structure.freedom_of).for_each(|(value, freedom)| *value += force[*freedom]);
+}
+
 /// The gap that a contact keeps after it has closed at a gap that counts as zero: where several contacts close at
 /// almost one point, the path then continues without a jump, however short the way to the next closing is.
 fn left_open(system: &ModeSystem<'_>, contact: usize) -> f64 {

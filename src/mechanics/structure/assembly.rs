@@ -154,7 +154,7 @@ impl<'a> ElementBlock<'a> {
     /// entries of a node with itself come first. Sums over the columns of a row thus add the entries of one component
     /// together.
     #[inline(always)]
-    fn each_entry(self, matrices: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
+    pub(super) fn each_entry(self, matrices: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
         let nodes = self.run.element(self.first).nodes().len();
         let own = self.freedoms.chunks_exact(self.size).zip(matrices.chunks_exact(self.size * self.size));
         match (nodes, self.size) {

@@ -11,6 +11,7 @@
 pub mod assembly;
 pub mod element_list;
 pub mod elements;
+pub mod mixed_iteration;
 pub mod numbering;
 mod resistance;
 pub mod sparsity;
@@ -58,6 +59,8 @@ pub struct Structure {
     layout: Option<Arc<Layout>>,
     /// The nodes that turn freely in space.
     pub turning: TurningNodes,
+    /// Whether an element has forces that are variables of the iteration.
+    independent_forces: bool,
 }
 
 impl Structure {
@@ -104,6 +107,7 @@ impl Structure {
             couplings: Vec::new(),
             layout: None,
             turning: TurningNodes::default(),
+            independent_forces: elements.iter().any(|element| element.independent_forces() > 0),
         };
         structure.turning = TurningNodes::of(&structure.numbering, &structure.unknown_of);
         structure.set_elements(elements);
@@ -219,6 +223,11 @@ impl Structure {
     /// The elements in blocks of one kind.
     fn blocks(&self) -> impl Iterator<Item = ElementBlock<'_>> {
         assembly::blocks(&self.elements, self.dimension, &self.element_freedoms)
+    }
+
+    /// Whether an element has forces that are variables of the iteration: see [`mixed_iteration`].
+    pub fn has_independent_forces(&self) -> bool {
+        self.independent_forces
     }
 
     /// Whether the forces of all elements are linear in the displacements.

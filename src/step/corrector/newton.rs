@@ -161,6 +161,7 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
     ) -> Self {
         let mut iterate = guess;
         residual::make_consistent(system, &mut iterate);
+        system.begin_iteration(&mut iterate);
         Self {
             system,
             closing,
@@ -319,7 +320,8 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
 
     /// Solves for the next correction.
     fn solve(&mut self, once: bool) -> Result<(), Failure> {
-        let Self { system, closing, iterate, values, factorisation, .. } = self;
+        let Self { system, closing, iterate, values, force, factorisation, .. } = self;
+        residual::make_mixed(system, iterate, values, force);
         let last = system.size - 1;
         let left_of_place = values[last];
         if closing.has_slope_beside_row() {

@@ -19,9 +19,11 @@ pub(crate) fn iterated_once(
 ) -> Option<(State, SystemFactorisation)> {
     let mut iterate = system.iterate(guess);
     residual::make_consistent(system, &mut iterate);
+    system.begin_iteration(&mut iterate);
     let mut values = DVector::zeros(system.size());
     let mut force = vec![0.0; system.loading.structure.freedoms()];
     residual::write_residual(system, &iterate, &mut values, &mut force);
+    residual::make_mixed(system, &iterate, &mut values, &mut force);
     let last = system.size() - 1;
     values[last] = closing.value(system, &iterate.state);
     let put_closing = |matrix: &mut dyn Sink| closing.write_gradient(system, &iterate.state, matrix);

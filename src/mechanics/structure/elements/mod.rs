@@ -42,6 +42,29 @@ pub trait FiniteElement: Debug + Send + Sync {
     /// Writes the tangent `∂²W/∂u²`.
     fn write_stiffness(&self, displacement: &[f64], stiffness: &mut [f64]);
 
+    /// Number of forces that are variables of the iteration, next to the displacements: see
+    /// [`mixed_iteration`](crate::mechanics::structure::mixed_iteration).
+    fn independent_forces(&self) -> usize {
+        0
+    }
+
+    /// Writes the independent forces that belong to the displacements.
+    fn write_independent_forces(&self, _displacement: &[f64], _forces: &mut [f64]) {}
+
+    /// Writes the nodal forces of the mixed form.
+    fn write_mixed_force(&self, displacement: &[f64], _forces: &[f64], force: &mut [f64]) {
+        self.write_force(displacement, force);
+    }
+
+    /// Writes the tangent of the mixed form.
+    fn write_mixed_stiffness(&self, displacement: &[f64], _forces: &[f64], stiffness: &mut [f64]) {
+        self.write_stiffness(displacement, stiffness);
+    }
+
+    /// Changes the independent forces of an iterate at a displacement by the linear equations, when the displacement
+    /// changes by `change`.
+    fn advance_independent_forces(&self, _displacement: &[f64], _change: &[f64], _forces: &mut [f64]) {}
+
     /// Writes the size of the terms that make up the nodal forces: stiffness times the displacements themselves (at
     /// least `least`), not their differences, and the force carried.
     fn write_force_sizes(&self, displacement: &[f64], least: f64, sizes: &mut [f64]);

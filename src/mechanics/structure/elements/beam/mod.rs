@@ -82,11 +82,17 @@ impl Beam {
     }
 
     fn deformed<'a>(&'a self, displacement: &'a [f64]) -> impl Iterator<Item = DeformedSegment> + 'a {
-        self.segments.iter().enumerate().map(|(place, segment)| {
-            let [first, second] = [place, place + 1].map(|node| &displacement[OF_NODE * node..][..OF_NODE]);
-            let relative = [second[0] - first[0], second[1] - first[1]];
-            segment.deformed(&EndMotion { relative, rotations: [first[2], second[2]] })
-        })
+        self.segments.iter().enumerate().map(|(place, segment)| segment.deformed(&motion(displacement, place)))
+    }
+
+    /// The segments with forces that are variables of the iteration.
+    fn deformed_with<'a>(
+        &'a self,
+        displacement: &'a [f64],
+        forces: &'a [f64],
+    ) -> impl Iterator<Item = DeformedSegment> + 'a {
+        let forces = forces.chunks_exact(2).map(|force| [force[0], force[1]]);
+        self.deformed(displacement).zip(forces).map(|(segment, force)| segment.with_force(force))
     }
 
     /// The force in the beam and the bending moment at an end, in the axes of the end's cross-section.
@@ -101,6 +107,45 @@ impl Beam {
             axial_force: normal[0] * x + normal[1] * y,
             shear_force: normal[0] * y - normal[1] * x,
             bending_moment: if which == 0 { -moment } else { moment },
+        }
+    }
+}
+
+/// The motion of the ends of the segment at a place.
+#[inline(always)]
+fn motion(displacement: &[f64], place: usize) -> EndMotion {
+    let [first, second] = [place, place + 1].map(|node| &displacement[OF_NODE * node..][..OF_NODE]);
+    EndMotion { relative: [second[0] - first[0], second[1] - first[1]], rotations: [first[2], second[2]] }
+}
+
+/// Writes the nodal forces of the segments; returns the largest force or moment.
+#[inline(always)]
+fn write_end_forces(segments: impl Iterator<Item = EndForces>, force: &mut [f64]) -> f64 {
+    force.fill(0.0);
+    let mut carried = 0.0_f64;
+    for (place, EndForces { force: [x, y], moments }) in segments.enumerate() {
+        let own = &mut force[OF_NODE * place..][..2 * OF_NODE];
+        for (value, part) in own.iter_mut().zip([-x, -y, moments[0], x, y, moments[1]]) {
+            *value += part;
+        }
+        carried = carried.max(x.hypot(y)).max(moments[0].abs()).max(moments[1].abs());
+    }
+    carried
+}
+
+/// Writes the tangent of the segments over `size` degrees of freedom.
+#[inline(always)]
+fn write_tangents(segments: impl Iterator<Item = DeformedSegment>, size: usize, stiffness: &mut [f64]) {
+    // The degrees of freedom of a segment as motions of its ends, with their signs.
+    const MOTIONS: [(usize, f64); 2 * OF_NODE] = [(0, -1.0), (1, -1.0), (2, 1.0), (0, 1.0), (1, 1.0), (3, 1.0)];
+    stiffness.fill(0.0);
+    for (place, segment) in segments.enumerate() {
+        let tangent = segment.tangent();
+        for (row, (of_row, sign)) in MOTIONS.iter().enumerate() {
+            let row = &mut stiffness[(OF_NODE * place + row) * size + OF_NODE * place..][..2 * OF_NODE];
+            for (value, (of_column, other)) in row.iter_mut().zip(&MOTIONS) {
+                *value += sign * other * tangent[*of_row][*of_column];
+            }
         }
     }
 }
@@ -123,33 +168,39 @@ impl FiniteElement for Beam {
     }
 
     fn write_force(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
-        force.fill(0.0);
-        let mut carried = 0.0_f64;
-        for (place, segment) in self.deformed(displacement).enumerate() {
-            let EndForces { force: [x, y], moments } = segment.end_forces();
-            let own = &mut force[OF_NODE * place..][..2 * OF_NODE];
-            for (value, part) in own.iter_mut().zip([-x, -y, moments[0], x, y, moments[1]]) {
-                *value += part;
-            }
-            carried = carried.max(x.hypot(y)).max(moments[0].abs()).max(moments[1].abs());
-        }
-        carried
+        write_end_forces(self.deformed(displacement).map(|segment| segment.end_forces()), force)
     }
 
     fn write_stiffness(&self, displacement: &[f64], stiffness: &mut [f64]) {
-        stiffness.fill(0.0);
-        let size = displacement.len();
-        // The degrees of freedom of a segment as motions of its ends, with their signs.
-        const MOTIONS: [(usize, f64); 2 * OF_NODE] = [(0, -1.0), (1, -1.0), (2, 1.0), (0, 1.0), (1, 1.0), (3, 1.0)];
-        for (place, segment) in self.deformed(displacement).enumerate() {
-            let tangent = segment.tangent();
-            for (row, (of_row, sign)) in MOTIONS.iter().enumerate() {
-                let row = &mut stiffness[(OF_NODE * place + row) * size + OF_NODE * place..][..2 * OF_NODE];
-                for (value, (of_column, other)) in row.iter_mut().zip(&MOTIONS) {
-                    *value += sign * other * tangent[*of_row][*of_column];
-                }
-            }
-        }
+        write_tangents(self.deformed(displacement), displacement.len(), stiffness);
+    }
+
+    fn independent_forces(&self) -> usize {
+        2 * self.segments.len()
+    }
+
+    fn write_independent_forces(&self, displacement: &[f64], forces: &mut [f64]) {
+        let own = self.deformed(displacement).flat_map(|segment| segment.force());
+        forces.iter_mut().zip(own).for_each(|(force, value)| *force = value);
+    }
+
+    fn write_mixed_force(&self, displacement: &[f64], forces: &[f64], force: &mut [f64]) {
+        let ends = self.deformed_with(displacement, forces).map(|segment| segment.mixed_end_forces());
+        write_end_forces(ends, force);
+    }
+
+    fn write_mixed_stiffness(&self, displacement: &[f64], forces: &[f64], stiffness: &mut [f64]) {
+        write_tangents(self.deformed_with(displacement, forces), displacement.len(), stiffness);
+    }
+
+    fn advance_independent_forces(&self, displacement: &[f64], change: &[f64], forces: &mut [f64]) {
+        let moved = (0..self.segments.len()).map(|place| motion(change, place));
+        let advanced: SmallVec<[[f64; 2]; 2]> = self
+            .deformed_with(displacement, forces)
+            .zip(moved)
+            .map(|(segment, change)| segment.advanced_force(&change))
+            .collect();
+        forces.iter_mut().zip(advanced.iter().flatten()).for_each(|(force, value)| *force = *value);
     }
 
     /// `Σ |K_ij| |u_j|` and the force carried. A rotation moves the far end by up to the length of the segment.

@@ -201,7 +201,59 @@ impl DeformedSegment {
         (chord / self.segment.length + 1.0 - unstretched / self.segment.length).max(0.0)
     }
 
-    /// `∂W/∂c` and `∂W/∂a`.
+    /// `F`, in axes that turn with the segment.
+    pub fn force(&self) -> [f64; 2] {
+        self.force
+    }
+
+    /// The segment with a force that is a variable of the iteration.
+    #[must_use]
+    pub fn with_force(self, force: [f64; 2]) -> Self {
+        Self { force, ..self }
+    }
+
+    /// `P⁻¹ e - F`: what the force lacks.
+    fn lacking(&self) -> [f64; 2] {
+        let whole = self.flexibility.solve(self.error);
+        [whole[0] - self.force[0], whole[1] - self.force[1]]
+    }
+
+    /// The force after a correction by which the ends move so far.
+    pub fn advanced_force(&self, change: &EndMotion) -> [f64; 2] {
+        let [cos, sin] = self.axes;
+        let [x, y] = change.relative;
+        let (mean, bent) =
+            (0.5 * (change.rotations[0] + change.rotations[1]), 0.5 * (change.rotations[1] - change.rotations[0]));
+        let chord = [cos * x + sin * y + mean * self.chord[1], cos * y - sin * x - mean * self.chord[0]];
+        let [first, second, turned] = self.columns();
+        let along = [0, 1].map(|k| first[k] * chord[0] + second[k] * chord[1] + turned[k] * bent);
+        let (lacking, by_motion) = (self.lacking(), self.flexibility.solve(along));
+        [0, 1].map(|k| self.force[k] + lacking[k] + by_motion[k])
+    }
+
+    /// The forces and moments on the ends in the mixed form, where the force need not be that of the displacements.
+    pub fn mixed_end_forces(&self) -> EndForces {
+        let (chord, bending) = self.gradient();
+        let lacking = self.lacking();
+        let [first, second, turned] = self.columns().map(|column| column[0] * lacking[0] + column[1] * lacking[1]);
+        self.at_ends([chord[0] + first, chord[1] + second], bending + turned)
+    }
+
+    /// `∂(e - P F)` by `c_1`, `c_2` and `a`.
+    #[inline(always)]
+    fn columns(&self) -> [[f64; 2]; 3] {
+        let ([c1, c2], [first, second]) = (self.chord, self.force);
+        let length = self.segment.length;
+        let linear = length / (12.0 * self.segment.stiffness.bending);
+        let jump = c1 * second - c2 * first;
+        [
+            [1.0 + linear * c2 * second, -linear * (jump + c1 * second)],
+            [linear * (jump - c2 * first), 1.0 + linear * c1 * first],
+            [-length * (self.sine[0] + self.average[0] * first), length * self.average[0] * second],
+        ]
+    }
+
+    /// `∂L/∂c` and `∂L/∂a`, those of `W` where the force is that of the displacements.
     #[inline(always)]
     fn gradient(&self) -> ([f64; 2], f64) {
         let [first, second] = self.force;
@@ -217,7 +269,13 @@ impl DeformedSegment {
     /// The forces and moments on the ends.
     #[inline(always)]
     pub fn end_forces(&self) -> EndForces {
-        let ([along, across], bending) = self.gradient();
+        let (chord, bending) = self.gradient();
+        self.at_ends(chord, bending)
+    }
+
+    /// Forces and moments on the ends from the derivatives by `c` and `a`.
+    #[inline(always)]
+    fn at_ends(&self, [along, across]: [f64; 2], bending: f64) -> EndForces {
         let [cos, sin] = self.axes;
         // The rotation of the axes alone.
         let turning = 0.5 * (along * self.chord[1] - across * self.chord[0]);
@@ -230,16 +288,10 @@ impl DeformedSegment {
     /// `∂²W` over `c_1`, `c_2` and `a`.
     #[inline(always)]
     fn curvature(&self) -> [[f64; 3]; 3] {
-        let ([c1, c2], [first, second]) = (self.chord, self.force);
+        let [first, second] = self.force;
         let (length, bending) = (self.segment.length, self.segment.stiffness.bending);
         let linear = length / (12.0 * bending);
-        let jump = c1 * second - c2 * first;
-        // ∂e - (∂P) F
-        let columns = [
-            [1.0 + linear * c2 * second, -linear * (jump + c1 * second)],
-            [linear * (jump - c2 * first), 1.0 + linear * c1 * first],
-            [-length * (self.sine[0] + self.average[0] * first), length * self.average[0] * second],
-        ];
+        let columns = self.columns();
         let solved = columns.map(|column| self.flexibility.solve(column));
         let mut matrix = [[0.0; 3]; 3];
         for (row, column) in matrix.iter_mut().zip(&columns) {
