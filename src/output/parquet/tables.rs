@@ -2,7 +2,7 @@
 
 use crate::check::measure::Errors;
 use crate::output::parquet::sheet::{Cell, Kind, Sheet};
-use crate::output::table::{AXES, counts, point_kind, status};
+use crate::output::table::{AXES, beam_forces, counts, point_kind, status};
 use crate::result::increment::{Diagnostics, Increment};
 use parquet::errors::Result;
 use std::io::Write;
@@ -19,9 +19,6 @@ pub enum PathTable {
     /// A row an increment and recorded contact: its state.
     Contacts,
 }
-
-/// Of a beam in the plane, at each of its ends.
-const END_FORCES: [&str; 3] = ["beam_axial_force", "shear_force", "bending_moment"];
 
 /// Most components of a vector.
 const MOST: usize = AXES.len();
@@ -69,8 +66,11 @@ impl PathTable {
                 for name in ["displacement", "reaction"] {
                     AXES[..dimension].iter().for_each(|axis| add(&format!("{name}_{axis}"), Kind::Number));
                 }
-                if dimension == 2 {
-                    ["rotation", "reaction_moment"].iter().for_each(|name| add(name, Kind::Number));
+                for name in ["rotation", "reaction_moment"] {
+                    match dimension {
+                        2 => add(name, Kind::Number),
+                        _ => AXES.iter().for_each(|axis| add(&format!("{name}_{axis}"), Kind::Number)),
+                    }
                 }
             }
             Self::Elements => {
@@ -80,9 +80,10 @@ impl PathTable {
                 AXES[..dimension].iter().for_each(|axis| add(&format!("force_{axis}"), Kind::Number));
                 if dimension == 2 {
                     add("moment", Kind::Number);
-                    for end in ["first", "last"] {
-                        END_FORCES.iter().for_each(|name| add(&format!("{name}_at_{end}_node"), Kind::Number));
-                    }
+                }
+                for end in ["first", "last"] {
+                    let names = beam_forces(dimension).iter();
+                    names.for_each(|name| add(&format!("{name}_at_{end}_node"), Kind::Number));
                 }
             }
             Self::Contacts => {
@@ -120,10 +121,10 @@ impl PathTable {
                     for values in [&increment.displacements, &increment.supports] {
                         row.extend(components(values.get(node).unwrap_or_default(), dimension));
                     }
-                    if dimension == 2 {
-                        for values in [&increment.displacements, &increment.supports] {
-                            row.push(values.get(node).and_then(|of_node| of_node.get(dimension)).copied().into());
-                        }
+                    let turns = if dimension == 2 { 1 } else { 3 };
+                    for values in [&increment.displacements, &increment.supports] {
+                        let of_node = values.get(node).unwrap_or_default();
+                        row.extend(components(of_node.get(dimension..).unwrap_or_default(), turns));
                     }
                     sheet.push(&row)
                 })
@@ -134,12 +135,10 @@ impl PathTable {
                 row.extend(components(state.force.as_deref().unwrap_or_default(), dimension));
                 if dimension == 2 {
                     row.push(state.moment.into());
-                    for end in 0..2 {
-                        let own = state.ends.as_ref().map(|ends| &ends[end]);
-                        row.push(own.map(|own| own.axial_force).into());
-                        row.push(own.map(|own| own.shear_force).into());
-                        row.push(own.map(|own| own.bending_moment).into());
-                    }
+                }
+                for end in 0..2 {
+                    let values: Vec<f64> = state.ends.iter().flat_map(|ends| ends[end].values()).collect();
+                    row.extend((0..beam_forces(dimension).len()).map(|place| Cell::from(values.get(place).copied())));
                 }
                 sheet.push(&row)
             }),

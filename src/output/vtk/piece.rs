@@ -1,6 +1,6 @@
 //! The file of one increment.
 
-use crate::output::table::point_kind;
+use crate::output::table::{beam_forces, point_kind};
 use crate::output::vtk::arrays::{DataArray, text_array, write_texts};
 use crate::output::vtk::grid::Grid;
 use crate::result::increment::{ElementState, Increment, Status};
@@ -115,15 +115,17 @@ impl Grid {
         DataArray::numbers(name, 3, &all)
     }
 
-    /// About the axis out of the plane; not-a-number of nodes that have none.
+    /// About the axis out of the plane, or the rotation vector in space; not-a-number of nodes that have none.
     fn rotations(&self, values: &NodalValues) -> DataArray {
-        let mut all = vec![f64::NAN; self.place_of_node.len()];
+        let count = if self.dimension == 2 { 1 } else { 3 };
+        let mut all = vec![f64::NAN; count * self.place_of_node.len()];
         for (node, components) in values.iter() {
-            if let (Some(place), Some(rotation)) = (self.place_of_node.get(&**node), components.get(self.dimension)) {
-                all[*place] = *rotation;
+            let turns = components.get(self.dimension..self.dimension + count);
+            if let (Some(place), Some(turns)) = (self.place_of_node.get(&**node), turns) {
+                all[count * place..count * (place + 1)].copy_from_slice(turns);
             }
         }
-        DataArray::numbers("rotation", 1, &all)
+        DataArray::numbers("rotation", count, &all)
     }
 
     /// Of a node with several contacts: the status that holds it most, the smallest gap, the sum of the reactions.
@@ -175,15 +177,6 @@ impl Grid {
         }
         arrays
     }
-}
-
-/// Cell data of beams, each with the values at the first and at the last node.
-const BEAM_FORCES: [&str; 3] = ["beam_axial_force", "shear_force", "bending_moment"];
-const BEAM_FORCES_IN_SPACE: [&str; 6] =
-    ["beam_axial_force", "shear_force_1", "shear_force_2", "torsional_moment", "bending_moment_1", "bending_moment_2"];
-
-fn beam_forces(dimension: usize) -> &'static [&'static str] {
-    if dimension == 2 { &BEAM_FORCES } else { &BEAM_FORCES_IN_SPACE }
 }
 
 /// What [`beam_forces`] names, of an element, one pair of values for each name; none where it is no beam.

@@ -13,7 +13,7 @@ const ARROWS = 120;
 export class Detail {
   constructor(model) {
     this.dimension = model.dimension;
-    this.hasBeams = (model.elements ?? []).some(({ kind }) => kind === "beam");
+    this.hasBeams = model.dimension === 2 && (model.elements ?? []).some(({ kind }) => kind === "beam");
     this.nodes = Object.keys(model.nodes).length;
     this.isLarge = this.nodes > LARGE;
     this.hasNames = this.nodes <= NAMED;
