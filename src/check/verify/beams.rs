@@ -1,7 +1,7 @@
 //! Scenes of plane beams with more and more elements: each error falls at the order that the elements claim.
 
 use crate::check::scenes::beams::{
-    ArchPoint, ColumnBetweenWalls, DeadForce, DeepArch, DraggedTip, LeeFrame, RoughArch, Section, SnapFit,
+    ArchPoint, BeamSection, ColumnBetweenWalls, DeadForce, DeepArch, DraggedTip, LeeFrame, RoughArch, SnapFit,
     SqueezedRing, roll_up,
 };
 use crate::check::verify::case::{AUTO, BOTH, Case};
@@ -147,8 +147,8 @@ fn frames() -> Vec<Option<Case>> {
         }));
     }
     for (what, section) in [
-        ("slender", Section::slender(1e6)),
-        ("with shear", Section { axial: 1e2, bending: 1.0, shear_flexibility: 1.0 / 40.0 }),
+        ("slender", BeamSection::slender(1e6)),
+        ("with shear", BeamSection { axial: 1e2, bending: 1.0, shear_flexibility: 1.0 / 40.0 }),
     ] {
         for elements in [4, 8, 16] {
             let cantilever = DeadForce { section, force: 10.0 };

@@ -1,8 +1,8 @@
 //! Circular arches of radius 1 with `EI = 1`.
 
-use crate::check::scenes::beams::reissner::{At, Member, Section};
+use crate::check::scenes::beams::reissner::{BeamMember, BeamSection, SectionState};
 use crate::check::scenes::beams::shooting::{fold, shoot};
-use crate::check::scenes::beams::{Chain, floor, on_circle};
+use crate::check::scenes::beams::{BeamChain, floor, on_circle};
 use serde_json::{Value, json};
 use std::f64::consts::FRAC_PI_2;
 
@@ -40,7 +40,7 @@ impl RoughArch {
     pub fn model(&self, elements: usize) -> Value {
         let mut places = on_circle(0.0, self.half_angle, 2 * elements);
         places[2 * elements] = self.foot();
-        let chain = Chain::new(&places, 3, &Section::slender(self.axial));
+        let chain = BeamChain::new(&places, 3, &BeamSection::slender(self.axial));
         let foot = chain.last();
         json!({
             "name": format!("half an arch on a rough floor, mu = {}", self.friction), "dimension": 2,
@@ -52,9 +52,9 @@ impl RoughArch {
     }
 
     /// The foot from the crown's moment, its height, the load and the foot's horizontal force.
-    fn foot_of(&self, moment: f64, drop: f64, load: f64, horizontal: f64) -> At {
-        let member = Member { section: Section::slender(self.axial), length: self.half_angle, curvature: -1.0 };
-        member.end(At { x: 0.0, y: 1.0 - drop, angle: 0.0, moment }, [horizontal, 0.5 * load])
+    fn foot_of(&self, moment: f64, drop: f64, load: f64, horizontal: f64) -> SectionState {
+        let member = BeamMember { section: BeamSection::slender(self.axial), length: self.half_angle, curvature: -1.0 };
+        member.end(SectionState { x: 0.0, y: 1.0 - drop, angle: 0.0, moment }, [horizontal, 0.5 * load])
     }
 
     /// Where the stuck foot begins to slip outwards.
@@ -120,7 +120,7 @@ impl DeepArch {
     /// The model of twice as many elements of three nodes as asked for on each side of the crown.
     pub fn model(&self, elements_a_side: usize) -> Value {
         let places = on_circle(-Self::HALF_ANGLE, Self::HALF_ANGLE, 4 * elements_a_side);
-        let chain = Chain::new(&places, 3, &Section::slender(self.axial));
+        let chain = BeamChain::new(&places, 3, &BeamSection::slender(self.axial));
         json!({
             "name": "arch of 215 degrees, hinged and clamped", "dimension": 2,
             "supports": {"n0": ["x", "y"], chain.last(): ["x", "y", "rz"]},
@@ -136,9 +136,10 @@ impl DeepArch {
     /// The first load maximum.
     pub fn maximum(&self) -> Option<ArchPoint> {
         let a = Self::HALF_ANGLE;
-        let member = Member { section: Section::slender(self.axial), length: a, curvature: -1.0 };
-        let crown =
-            |angle: f64, fx: f64, fy: f64| member.end(At { x: -a.sin(), y: a.cos(), angle, moment: 0.0 }, [fx, fy]);
+        let member = BeamMember { section: BeamSection::slender(self.axial), length: a, curvature: -1.0 };
+        let crown = |angle: f64, fx: f64, fy: f64| {
+            member.end(SectionState { x: -a.sin(), y: a.cos(), angle, moment: 0.0 }, [fx, fy])
+        };
         let found = fold(&DEEP_ARCH_START, |unknowns| {
             let [angle, fx, fy, load] = unknowns[..] else { return Vec::new() };
             let end = member.end(crown(angle, fx, fy), [fx, fy + load]);

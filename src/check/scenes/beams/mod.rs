@@ -27,27 +27,27 @@ mod tests;
 pub use arches::{ArchPoint, DeepArch, RoughArch};
 pub use frames::{DeadForce, LeeFrame, LimitPoint, roll_up};
 pub use pressed::{ColumnBetweenWalls, SqueezedRing};
-pub use reissner::Section;
+pub use reissner::BeamSection;
 pub use sliding::{DraggedTip, SnapFit, TipPoint};
 
 use serde_json::{Map, Value, json};
 
 /// A chain of beams through places, of two or three nodes each; nodes are called by the prefix and their number from
 /// `first` on.
-struct Chain {
+struct BeamChain {
     nodes: Map<String, Value>,
     beams: Vec<Value>,
 }
 
-impl Chain {
-    fn new(places: &[[f64; 2]], nodes_of_a_beam: usize, section: &Section) -> Self {
+impl BeamChain {
+    fn new(places: &[[f64; 2]], nodes_of_a_beam: usize, section: &BeamSection) -> Self {
         let mut chain = Self { nodes: Map::new(), beams: Vec::new() };
         chain.extend(places, nodes_of_a_beam, section);
         chain
     }
 
     /// Adds beams from the last node, if there is one, through further places.
-    fn extend(&mut self, places: &[[f64; 2]], nodes_of_a_beam: usize, section: &Section) {
+    fn extend(&mut self, places: &[[f64; 2]], nodes_of_a_beam: usize, section: &BeamSection) {
         let first = self.nodes.len().saturating_sub(1);
         let added = places.len() - usize::from(self.nodes.is_empty());
         for place in places {

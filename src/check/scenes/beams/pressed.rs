@@ -1,8 +1,8 @@
 //! Beams between rigid walls: a ring between two plates, a column between two walls.
 
-use crate::check::scenes::beams::reissner::{At, Member, Section};
+use crate::check::scenes::beams::reissner::{BeamMember, BeamSection, SectionState};
 use crate::check::scenes::beams::shooting::shoot;
-use crate::check::scenes::beams::{Chain, floor, on_circle, on_line};
+use crate::check::scenes::beams::{BeamChain, floor, on_circle, on_line};
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -19,7 +19,7 @@ impl SqueezedRing {
     pub fn model(&self, elements: usize) -> Value {
         let mut places = on_circle(0.0, PI, 2 * elements);
         (places[elements], places[2 * elements]) = ([1.0, 0.0], [0.0, -1.0]);
-        let chain = Chain::new(&places, 3, &Section::slender(self.axial));
+        let chain = BeamChain::new(&places, 3, &BeamSection::slender(self.axial));
         let plate = |node: usize| if node < elements { "ceiling" } else { "floor" };
         let contacts: Vec<Value> = (0..=2 * elements)
             .map(|node| json!({"node": format!("n{node}"), "obstacle": plate(node), "friction": self.friction}))
@@ -36,9 +36,10 @@ impl SqueezedRing {
 
     /// A plate's force on the half ring that it touches at one point, by the distance that the plates have approached.
     pub fn force(&self, approach: f64) -> Option<f64> {
-        let quarter = Member { section: Section::slender(self.axial), length: FRAC_PI_2, curvature: 1.0 };
+        let quarter = BeamMember { section: BeamSection::slender(self.axial), length: FRAC_PI_2, curvature: 1.0 };
         let solved = shoot(&[-0.3 * approach, 2.0 * approach], |unknowns| {
-            let side = quarter.end(At { x: 0.0, y: -1.0, angle: 0.0, moment: unknowns[0] }, [0.0, -unknowns[1]]);
+            let side =
+                quarter.end(SectionState { x: 0.0, y: -1.0, angle: 0.0, moment: unknowns[0] }, [0.0, -unknowns[1]]);
             vec![side.angle - FRAC_PI_2, side.y + 0.5 * approach]
         })?;
         Some(solved[1])
@@ -60,7 +61,7 @@ impl ColumnBetweenWalls {
     /// The model of elements of two nodes, an even number. A force across the middle takes the column to one wall while it
     /// is pressed, and is taken away; the load of the last stage, which has no end, adds to a pressed load of 20.
     pub fn model(&self, elements: usize) -> Value {
-        let chain = Chain::new(&on_line([0.0, 0.0], [0.0, 1.0], elements), 2, &Section::slender(self.axial));
+        let chain = BeamChain::new(&on_line([0.0, 0.0], [0.0, 1.0], elements), 2, &BeamSection::slender(self.axial));
         let (top, middle) = (chain.last(), Self::middle(elements));
         let wall = |x: f64, normal: f64| json!({"kind": "plane", "point": [x, 0], "normal": [normal, 0]});
         let contacts: Vec<Value> = ["right", "left"]
@@ -93,9 +94,9 @@ impl ColumnBetweenWalls {
     }
 
     /// The upper end from the moment at the middle, half the wall's force and the load.
-    fn end(&self, moment: f64, half_force: f64, load: f64) -> At {
-        let half = Member { section: Section::slender(self.axial), length: 0.5, curvature: 0.0 };
-        half.end(At { x: self.gap, y: 0.0, angle: FRAC_PI_2, moment }, [half_force, -load])
+    fn end(&self, moment: f64, half_force: f64, load: f64) -> SectionState {
+        let half = BeamMember { section: BeamSection::slender(self.axial), length: 0.5, curvature: 0.0 };
+        half.end(SectionState { x: self.gap, y: 0.0, angle: FRAC_PI_2, moment }, [half_force, -load])
     }
 
     /// The load at which the buckled column touches a wall.

@@ -19,7 +19,7 @@ const ITERATIONS: usize = 60;
 
 /// Stiffnesses of a section.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Section {
+pub struct BeamSection {
     /// EA, a force.
     pub axial: f64,
     /// EI, a force times a length squared.
@@ -28,7 +28,7 @@ pub struct Section {
     pub shear_flexibility: f64,
 }
 
-impl Section {
+impl BeamSection {
     /// `EI = 1`, without shear.
     pub fn slender(axial: f64) -> Self {
         Self { axial, bending: 1.0, shear_flexibility: 0.0 }
@@ -37,7 +37,7 @@ impl Section {
 
 /// A section's place, the angle of its tangent (radians) and its bending moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct At {
+pub struct SectionState {
     pub x: f64,
     pub y: f64,
     pub angle: f64,
@@ -46,16 +46,16 @@ pub struct At {
 
 /// A member of constant section and constant stress-free curvature, without loads between its ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Member {
-    pub section: Section,
+pub struct BeamMember {
+    pub section: BeamSection,
     pub length: f64,
     /// Stress-free curvature, positive where the angle grows.
     pub curvature: f64,
 }
 
-impl Member {
+impl BeamMember {
     /// The last section of the member, from the first one and the internal force.
-    pub fn end(&self, start: At, force: [f64; 2]) -> At {
+    pub fn end(&self, start: SectionState, force: [f64; 2]) -> SectionState {
         let rule = Collocation::new();
         let step = self.length / f64::from(STEPS);
         let mut state = [start.x, start.y, start.angle, start.moment];
@@ -63,7 +63,7 @@ impl Member {
             state = rule.step(state, step, |state| self.derivative(state, force));
         }
         let [x, y, angle, moment] = state;
-        At { x, y, angle, moment }
+        SectionState { x, y, angle, moment }
     }
 
     fn derivative(&self, [_, _, angle, moment]: [f64; 4], [fx, fy]: [f64; 2]) -> [f64; 4] {

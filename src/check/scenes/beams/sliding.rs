@@ -1,8 +1,8 @@
 //! Tips of cantilevers that slip: on a floor that moves, and over a round catch.
 
-use crate::check::scenes::beams::reissner::{At, Member, Section};
+use crate::check::scenes::beams::reissner::{BeamMember, BeamSection, SectionState};
 use crate::check::scenes::beams::shooting::shoot;
-use crate::check::scenes::beams::{Chain, on_line};
+use crate::check::scenes::beams::{BeamChain, on_line};
 use serde_json::{Value, json};
 use std::f64::consts::FRAC_PI_2;
 
@@ -34,7 +34,7 @@ impl DraggedTip {
 
     /// The model of elements of two nodes; the first stage raises the floor, the second moves it sideways.
     pub fn model(&self, elements: usize) -> Value {
-        let chain = Chain::new(&on_line([0.0, 0.0], self.tip(), elements), 2, &Section::slender(self.axial));
+        let chain = BeamChain::new(&on_line([0.0, 0.0], self.tip(), elements), 2, &BeamSection::slender(self.axial));
         let tip = chain.last();
         json!({
             "name": "cantilever whose tip is dragged along by a floor", "dimension": 2,
@@ -50,10 +50,10 @@ impl DraggedTip {
 
     /// The tip on the raised floor while it slips along x by a friction force of the given sign.
     pub fn slipping(&self, sign: f64) -> Option<TipPoint> {
-        let member = Member { section: Section::slender(self.axial), length: 1.0, curvature: 0.0 };
+        let member = BeamMember { section: BeamSection::slender(self.axial), length: 1.0, curvature: 0.0 };
         let [x, y] = self.tip();
         let end = |moment: f64, reaction: f64| {
-            let start = At { x: 0.0, y: 0.0, angle: -self.slant, moment };
+            let start = SectionState { x: 0.0, y: 0.0, angle: -self.slant, moment };
             member.end(start, [sign * self.friction * reaction, reaction])
         };
         let mut unknowns = vec![0.0, 0.0];
@@ -86,8 +86,8 @@ impl SnapFit {
     /// The model of elements of two nodes: as many as asked for, a multiple of 5, in the beam, a fifth as many in the hook.
     /// The load factor is the clamp's displacement.
     pub fn model(&self, elements: usize) -> Value {
-        let section = Section::slender(self.axial);
-        let mut chain = Chain::new(&on_line([0.0, 0.0], [1.0, 0.0], elements), 2, &section);
+        let section = BeamSection::slender(self.axial);
+        let mut chain = BeamChain::new(&on_line([0.0, 0.0], [1.0, 0.0], elements), 2, &section);
         chain.extend(&on_line([1.0, 0.0], [1.0, -Self::HOOK], elements / 5)[1..], 2, &section);
         let tip = chain.last();
         json!({
@@ -106,14 +106,14 @@ impl SnapFit {
     /// The clamp's displacement and the normal reaction while the hook's end slides forwards, by its angle on the catch
     /// from the vertical, clockwise, in radians.
     pub fn sliding(&self, angle: f64) -> Option<(f64, f64)> {
-        let section = Section::slender(self.axial);
-        let member = |length: f64| Member { section, length, curvature: 0.0 };
+        let section = BeamSection::slender(self.axial);
+        let member = |length: f64| BeamMember { section, length, curvature: 0.0 };
         let center = Self::center();
         let end = |angle: f64, moment: f64, reaction: f64, travel: f64| {
             let (normal, along) = ([angle.sin(), angle.cos()], [angle.cos(), -angle.sin()]);
             let force = [0, 1].map(|k| reaction * (normal[k] - self.friction * along[k]));
-            let corner = member(1.0).end(At { x: travel, y: 0.0, angle: 0.0, moment }, force);
-            let end = member(Self::HOOK).end(At { angle: corner.angle - FRAC_PI_2, ..corner }, force);
+            let corner = member(1.0).end(SectionState { x: travel, y: 0.0, angle: 0.0, moment }, force);
+            let end = member(Self::HOOK).end(SectionState { angle: corner.angle - FRAC_PI_2, ..corner }, force);
             (end, [center[0] + Self::RADIUS * normal[0], center[1] + Self::RADIUS * normal[1]])
         };
         // From the touch on.

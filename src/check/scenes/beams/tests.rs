@@ -33,7 +33,7 @@ fn a_rough_arch_has_its_published_points() {
 #[test]
 fn frames_have_their_published_points() {
     close(DeepArch { axial: RIGID }.maximum().unwrap().load, 8.9731, 1e-4);
-    let [first, second] = LeeFrame { section: Section::slender(RIGID) }.limits().unwrap();
+    let [first, second] = LeeFrame { section: BeamSection::slender(RIGID) }.limits().unwrap();
     close(first.load, 18.5587466, 1e-7);
     close(first.displacement[0], 0.224057, 1e-6);
     close(first.displacement[1], -0.406162, 1e-6);
@@ -45,7 +45,7 @@ fn frames_have_their_published_points() {
     for (force, [w, u, slope]) in
         [(1.0, [0.3017207738, 0.05643323628, 0.4613519497]), (10.0, [0.8106090249, 0.5549955978, 1.430285539])]
     {
-        let [x, y, angle] = DeadForce { section: Section::slender(RIGID), force }.tip().unwrap();
+        let [x, y, angle] = DeadForce { section: BeamSection::slender(RIGID), force }.tip().unwrap();
         close(y, w, 1e-9);
         close(x, -u, 1e-9);
         close(angle, slope, 1e-9);
