@@ -52,6 +52,10 @@ impl Numbers {
 /// whose outside or inside they lie; pressed, then pushed, some by a moving floor or pin. In space where the seed is a
 /// multiple of 5. The last coordinate is the height.
 pub fn random_scene(seed: u64) -> JobRequest {
+    typed(random_document(seed))
+}
+
+fn random_document(seed: u64) -> Value {
     let mut numbers = Numbers(seed);
     let dimension = if seed.is_multiple_of(5) { 3 } else { 2 };
     let up = dimension - 1;
@@ -133,13 +137,86 @@ pub fn random_scene(seed: u64) -> JobRequest {
         stages.push(json!({"name": "press", "forces": press, "until": {"load_above": 1}}));
     }
     stages.push(last);
-    typed(json!({
+    json!({
         "model": {
             "name": format!("random scene {seed}"), "dimension": dimension, "nodes": nodes, "supports": supports,
             "elements": elements, "obstacles": obstacles, "contacts": contacts, "stages": stages
         },
         "analysis": {"arc_length": {"initial": 0.05, "min": 1e-9, "max": 0.2}, "max_increments": 40}
-    }))
+    })
+}
+
+/// A random scene in the plane whose bars are mostly beams: straight ones of one or two elements and curved ones, with and
+/// without shear, some hinged at their ends, some clamped to their pins; with rotational springs and moments.
+pub fn random_frame(seed: u64) -> JobRequest {
+    // Multiples of 5 are in space.
+    let mut document = random_document(5 * (seed / 4) + 1 + seed % 4);
+    let mut numbers = Numbers(seed.wrapping_mul(6271).wrapping_add(3));
+    let model = &mut document["model"];
+    model["name"] = json!(format!("random frame {seed}"));
+    let place = |model: &Value, node: &str| [0, 1].map(|k| model["nodes"][node][k].as_f64().expect("a coordinate"));
+    let mut turning: Vec<String> = Vec::new();
+    let bars = std::mem::take(model["elements"].as_array_mut().expect("elements"));
+    let mut elements = Vec::new();
+    for (number, bar) in bars.into_iter().enumerate() {
+        if numbers.chance(0.25) {
+            elements.push(bar);
+            continue;
+        }
+        let ends = [0, 1].map(|k| bar["nodes"][k].as_str().expect("a node").to_owned());
+        let [from, to] = [place(model, &ends[0]), place(model, &ends[1])];
+        let chord = [to[0] - from[0], to[1] - from[1]];
+        let axial = bar["axial_stiffness"].as_f64().expect("a stiffness");
+        let bending = axial * chord[0].hypot(chord[1]).powi(2) * numbers.between(0.002, 0.03);
+        let mut section = json!({"kind": "beam", "axial_stiffness": axial, "bending_stiffness": bending});
+        if numbers.chance(0.3) {
+            section["shear_stiffness"] = json!(axial * numbers.between(0.1, 0.5));
+        }
+        let shape = numbers.below(3);
+        let middle = format!("middle{number}");
+        if shape > 0 {
+            let rise = if shape == 1 { 0.0 } else { numbers.between(-0.15, 0.15) };
+            let at = [from[0] + 0.5 * chord[0] - rise * chord[1], from[1] + 0.5 * chord[1] + rise * chord[0]];
+            model["nodes"][&middle] = json!(at);
+            turning.push(middle.clone());
+        }
+        let chains: Vec<Vec<&str>> = match shape {
+            0 => vec![vec![&ends[0], &ends[1]]],
+            1 => vec![vec![&ends[0], &middle], vec![&middle, &ends[1]]],
+            _ => vec![vec![&ends[0], &middle, &ends[1]]],
+        };
+        let hinged = [numbers.chance(0.2), numbers.chance(0.2)];
+        for nodes in chains {
+            let mut beam = section.clone();
+            beam["nodes"] = json!(nodes);
+            for (end, hinged) in ends.iter().zip(hinged).filter(|(end, _)| nodes.contains(&end.as_str())) {
+                if hinged {
+                    beam["releases"][end] = json!(["rz"]);
+                } else {
+                    turning.push(end.clone());
+                }
+            }
+            elements.push(beam);
+        }
+    }
+    for node in &turning {
+        if node.starts_with("pin") && numbers.chance(0.5) {
+            model["supports"][node] = json!(["x", "y", "rz"]);
+        }
+        if node.starts_with("tip") && numbers.chance(0.3) {
+            let stiffness = numbers.between(0.05, 0.5);
+            elements.push(json!({"kind": "rotational_spring", "nodes": [node], "stiffness": stiffness}));
+        }
+    }
+    model["elements"] = json!(elements);
+    let tips: Vec<&String> = turning.iter().filter(|node| node.starts_with("tip")).collect();
+    if let (Some(tip), true) = (tips.first(), numbers.chance(0.3)) {
+        let stages = model["stages"].as_array_mut().expect("stages");
+        stages.last_mut().expect("a stage")["moments"] = json!({tip.as_str(): numbers.between(-0.2, 0.2)});
+    }
+    // Stiffer than bars: a longer way to the same events.
+    document["analysis"]["max_increments"] = json!(60);
+    typed(document)
 }
 
 /// One to three tips in space on a floor that may slant, on balls or in bowls that touch them at the apex: on springs

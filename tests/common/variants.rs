@@ -110,3 +110,39 @@ pub fn in_reverse(mut request: JobRequest) -> JobRequest {
     model.contacts.reverse();
     request
 }
+
+/// The same request in the plane, turned and moved, the way axes and origin are chosen; without supports of one component.
+pub fn turned_in_plane(mut request: JobRequest, angle: f64, shift: f64) -> JobRequest {
+    let (sine, cosine) = angle.sin_cos();
+    let turn = |v: &[f64]| vec![cosine * v[0] - sine * v[1], sine * v[0] + cosine * v[1]];
+    let place = |v: &[f64]| turn(v).iter().map(|value| value + shift).collect::<Vec<f64>>();
+    request.model.nodes.values_mut().for_each(|x| *x = place(x));
+    for element in &mut request.model.elements {
+        if let Element::Spring { stiffness, .. } = element {
+            // R K Rᵀ, row by row.
+            let columns: Vec<Vec<f64>> = stiffness.iter().map(|row| turn(row)).collect();
+            let rows: Vec<Vec<f64>> = (0..2).map(|k| turn(&[columns[0][k], columns[1][k]])).collect();
+            *stiffness = vec![vec![rows[0][0], rows[1][0]], vec![rows[0][1], rows[1][1]]];
+            stiffness[1][0] = stiffness[0][1];
+        }
+    }
+    for obstacle in request.model.obstacles.values_mut() {
+        match obstacle {
+            Obstacle::Plane { point, normal } => {
+                *point = place(point);
+                *normal = turn(normal);
+            }
+            Obstacle::Ball { center, .. } => *center = place(center),
+        }
+    }
+    for stage in &mut request.model.stages {
+        for pattern in [&mut stage.forces, &mut stage.displacements, &mut stage.obstacle_motion] {
+            for vector in pattern.values_mut() {
+                // A third component is a rotation, which stays.
+                let turned = turn(vector);
+                vector[..2].copy_from_slice(&turned);
+            }
+        }
+    }
+    request
+}

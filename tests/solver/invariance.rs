@@ -1,9 +1,7 @@
 //! What must hold for every input: the same bits for the same model, and nothing but round-off from other units.
 
 use crate::common::paths::{scene, trace};
-use crate::common::variants::in_units;
-use arcslip::model::JobRequest;
-use arcslip::model::request::{Element, Obstacle};
+use crate::common::variants::{in_units, turned_in_plane};
 use arcslip::result::increment::Increment;
 
 /// Everything but the clock, as text.
@@ -79,38 +77,6 @@ fn energy_balance_falls_with_the_step() {
     }
 }
 
-/// The same request turned and moved, the way axes and origin are chosen.
-fn turned(mut request: JobRequest, angle: f64, shift: f64) -> JobRequest {
-    let (sine, cosine) = angle.sin_cos();
-    let turn = |v: &[f64]| vec![cosine * v[0] - sine * v[1], sine * v[0] + cosine * v[1]];
-    let place = |v: &[f64]| turn(v).iter().map(|value| value + shift).collect::<Vec<f64>>();
-    request.model.nodes.values_mut().for_each(|x| *x = place(x));
-    for element in &mut request.model.elements {
-        if let Element::Spring { stiffness, .. } = element {
-            // R K Rᵀ, row by row.
-            let columns: Vec<Vec<f64>> = stiffness.iter().map(|row| turn(row)).collect();
-            let rows: Vec<Vec<f64>> = (0..2).map(|k| turn(&[columns[0][k], columns[1][k]])).collect();
-            *stiffness = vec![vec![rows[0][0], rows[1][0]], vec![rows[0][1], rows[1][1]]];
-            stiffness[1][0] = stiffness[0][1];
-        }
-    }
-    for obstacle in request.model.obstacles.values_mut() {
-        match obstacle {
-            Obstacle::Plane { point, normal } => {
-                *point = place(point);
-                *normal = turn(normal);
-            }
-            Obstacle::Ball { center, .. } => *center = place(center),
-        }
-    }
-    for stage in &mut request.model.stages {
-        for pattern in [&mut stage.forces, &mut stage.displacements, &mut stage.obstacle_motion] {
-            pattern.values_mut().for_each(|vector| *vector = turn(vector));
-        }
-    }
-    request
-}
-
 #[test]
 fn axes_and_origin_change_nothing_but_round_off() {
     for name in ["one-bar-truss", "one-bar-truss-rough", "klarbring"] {
@@ -118,7 +84,7 @@ fn axes_and_origin_change_nothing_but_round_off() {
         for (angle, shift, tolerance) in
             [(0.1, 0.0, 1e-8), (1.0, 0.0, 1e-8), (-2.5, 10.0, 1e-8), (0.7, 1e5, 1e-6), (2.5, 1e6, 1e-5)]
         {
-            let (other, report) = trace(&turned(scene(name), angle, shift));
+            let (other, report) = trace(&turned_in_plane(scene(name), angle, shift));
             let place = format!("{name} turned by {angle}, moved by {shift:e}: {:?}", report.stop_reason);
             // Far away the input itself has fewer digits, and the number of points may differ.
             if shift <= 10.0 {

@@ -22,6 +22,7 @@ mod endings;
 mod exact_scenes;
 mod folded_slip;
 mod forces;
+mod frames;
 mod held_beyond_slides;
 mod hidden_events;
 mod invariance;

@@ -1,7 +1,8 @@
 //! Random small scenes, of fixed seeds, two hundred and more in space: what must hold of every path holds of theirs.
 
 use crate::common::paths::{Traced, judged};
-use crate::common::random::{random_scene, random_space};
+use crate::common::random::{random_frame, random_scene, random_space};
+use crate::common::variants::turned_in_plane;
 use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
 use arcslip::model::request::Method;
@@ -9,6 +10,7 @@ use arcslip::result::increment::{Increment, PointKind};
 use arcslip::result::stop_reason::StopReason;
 
 const SCENES: u64 = 200;
+const FRAMES: u64 = 200;
 const SCENES_IN_SPACE: u64 = 60;
 /// Scenes in space whose slips begin or end hardly pressed, or are pressed only once the node has moved, and go on.
 const HARDLY_PRESSED: [u64; 22] =
@@ -55,7 +57,7 @@ fn difference(auto: &[Increment], mpec: &[Increment]) -> Option<String> {
         return Some(format!("{} and {} increments", auto.len(), mpec.len()));
     }
     auto.iter().zip(mpec).find_map(|(a, b)| {
-        let place = |what: &str| Some(format!("auto and mpec differ at increment {}: {what}", a.index));
+        let place = |what: &str| Some(format!("the paths differ at increment {}: {what}", a.index));
         if a.point.kind != b.point.kind {
             return place("kind");
         }
@@ -149,6 +151,45 @@ fn every_path_in_space_keeps_the_laws() {
         let goes_on = matches!(reason, StopReason::StagesCompleted | StopReason::MaxIncrements);
         assert!(goes_on, "scene {seed} in space: {reason:?}");
     }
+}
+
+#[test]
+fn every_path_of_a_frame_keeps_the_laws() {
+    let seeds: Vec<u64> = (0..FRAMES).collect();
+    let Seen { contact_changes, smooth_limits, bifurcations, .. } = judge_all(random_frame, &seeds);
+    // Beams are stiffer than bars, and fewer of them snap.
+    assert!(contact_changes >= 30 && smooth_limits >= 5 && bifurcations >= 100);
+}
+
+/// A turned and moved frame has the turned path: its events at the same loads, its nodes at the turned places.
+#[test]
+fn frames_are_objective() {
+    let (angle, shift) = (0.7_f64, 0.3);
+    let (sine, cosine) = angle.sin_cos();
+    let mut faulty = Vec::new();
+    for seed in 0..FRAMES {
+        let mut request = random_frame(seed);
+        // The default is the diagonal of a box, which turns.
+        let plan = judged(&request).plan;
+        let arc_length = &mut request.analysis.arc_length;
+        arc_length.displacement_scale = Some(plan.displacement_scale);
+        // The stiffness along one axis differs from that along another.
+        arc_length.load_scale = Some(plan.load_scales[0]);
+        let (plain, other) = (judged(&request), judged(&turned_in_plane(request, angle, shift)));
+        let mut back = other.increments.clone();
+        for increment in &mut back {
+            let turn = |place: &[f64]| {
+                let mut turned = place.to_vec();
+                turned[0] = cosine * place[0] + sine * place[1];
+                turned[1] = cosine * place[1] - sine * place[0];
+                turned
+            };
+            increment.displacements =
+                increment.displacements.iter().map(|(node, place)| (node.to_owned(), turn(place))).collect();
+        }
+        faulty.extend(difference(&plain.increments, &back).map(|fault| format!("{seed}: {fault}")));
+    }
+    assert!(faulty.is_empty(), "{} of {FRAMES} frames:\n{}", faulty.len(), faulty.join("\n"));
 }
 
 /// The same seed, the same scene; another seed, another.

@@ -289,6 +289,11 @@ impl MeasuredBeam {
             let mut one = 1.5 * segment.chord_turn(relative(place), turns[other]) - 0.5 * turns[other];
             let mut next = one + 1e-4;
             let mut of_one = moment(one);
+            if of_one == 0.0 {
+                // As at the start, where a rotation that is zero but for rounding would be the largest force.
+                turns[own] = one;
+                continue;
+            }
             for _ in 0..MOST_STEPS {
                 let of_next = moment(next);
                 let step = of_next * (next - one) / (of_next - of_one);

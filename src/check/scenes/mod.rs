@@ -2,8 +2,9 @@
 //!
 //! The folder `pictures` contains pictures of some scenes, drawn by `arcslip solve`, `study`, `sweep` and `verify` with
 //! `--plot`; tests compare the pictures of the first three commands. [`exact`] contains the paths that are known in
-//! closed form. [`lattice`] and [`of_any_size`] generate scenes of given sizes.
+//! closed form. [`beams`], [`lattice`] and [`of_any_size`] generate scenes of given sizes.
 
+pub mod beams;
 pub mod exact;
 pub mod lattice;
 pub mod of_any_size;
