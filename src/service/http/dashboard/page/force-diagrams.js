@@ -3,18 +3,12 @@
 
 import { vector } from "./geometry.js";
 import { fromSheet } from "./plot-style.js";
+import { DIAGRAMS } from "./structure-options.js";
 import { measured } from "./units.js";
 
 const { plus, unit } = vector;
 /** The height of the largest value, as a part of the extent. */
 const HEIGHT = 0.12;
-
-/** What can be drawn: the member of a beam's end forces, in words, and on which side positive values are. */
-export const DIAGRAMS = {
-  bending_moment: { words: "bending moment", side: -1 },
-  shear_force: { words: "shear force", side: 1 },
-  axial_force: { words: "axial force", side: 1 },
-};
 
 /** Values at the first and the last node of an element; null where there are none. */
 export function diagramValues(kind, { ends, axial }) {

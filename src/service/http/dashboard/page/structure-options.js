@@ -1,10 +1,16 @@
 // How the structure is drawn, as the reader chooses it: the exaggeration of its displacements, and the names of its nodes.
 
 import { button, element, fill } from "./dom.js";
-import { DIAGRAMS } from "./force-diagrams.js";
 
 /** What the largest displacement comes to where the exaggeration is fitted, as a part of the structure's size. */
 const SEEN = 0.1;
+
+/** Diagrams of forces in members: the member of a beam's end forces, in words, and on which side positive values are. */
+export const DIAGRAMS = {
+  bending_moment: { words: "bending moment", side: -1 },
+  shear_force: { words: "shear force", side: 1 },
+  axial_force: { words: "axial force", side: 1 },
+};
 
 export class StructureOptions {
   /** Tells `changed()`; asks `fitted()` for the exaggeration at which displacements are seen; `exaggeration`: the
