@@ -49,8 +49,13 @@ pub(super) struct SpaceSegment {
     chord: f64,
     /// `h`
     length: f64,
-    /// `φ_0`, across the chord.
+    /// `φ_0`, across the chord, as the formulas of the deformed segment give it at rest: the strains there are zero, not
+    /// round-off.
     turn: [f64; 3],
+    /// Half of the turn.
+    half: Quaternion<f64>,
+    /// `h F q` at rest.
+    shortened: [f64; 3],
     pub stiffness: SpaceSectionStiffness,
 }
 
@@ -147,7 +152,13 @@ impl SpaceSegment {
         let mut own: [f64; 3] = axes.tr_mul(&turn).into();
         own[0] = 0.0;
         let length = size / sine_of_root(0.25 * turn.norm_squared())[0];
-        Self { axes, chord: size, length, turn: own, stiffness }
+        let half = quaternion(&own.map(|part| 0.5 * part));
+        let mut segment = Self { axes, chord: size, length, turn: own, half, shortened: [0.0; 3], stiffness };
+        if own != [0.0; 3] {
+            (_, segment.turn) = segment.strains([0.0; 3], &[[0.0; 3]; 2], &[Quaternion::identity(); 2]);
+            segment.shortened = segment.shortening(&segment.turn);
+        }
+        segment
     }
 
     pub fn length(&self) -> f64 {
@@ -192,7 +203,7 @@ impl SpaceSegment {
         let mut between = Turn(real, into_axes(&vector));
         let mut sum = ends;
         if self.turn != [0.0; 3] {
-            let half = quaternion(&self.turn.map(|part| 0.5 * part));
+            let half = self.half;
             between = constant(&half).after(&between).after(&constant(&half));
             let global: [f64; 3] = (self.axes * half.imag()).into();
             let half = Turn::constant(half.w, global);
@@ -210,6 +221,15 @@ impl SpaceSegment {
         (into_axes(&added(&relative, &turned)), vector_of(&between))
     }
 
+    /// `h F q`
+    #[inline(always)]
+    fn shortening<D: Differential>(&self, turn: &[D; 3]) -> [D; 3] {
+        let squares = turn.map(|part| part * part);
+        let across = squares[1] + squares[2];
+        let [of_second, ..] = averages(squares[0] + across);
+        [-across, turn[0] * turn[1], turn[0] * turn[2]].map(|part| (of_second * part).times(self.length))
+    }
+
     /// `W` by the excess of the chord and `φ`.
     #[inline(always)]
     fn energy_of<D: Differential>(&self, excess: [D; 3], turn: [D; 3]) -> D {
@@ -221,9 +241,8 @@ impl SpaceSegment {
         let zero = D::constant(0.0);
         let (b, q) = ([zero, turn[2], -turn[1]], [-across, turn[0] * turn[1], turn[0] * turn[2]]);
         let chord = [excess[0].plus(self.chord), excess[1], excess[2]];
-        let mut error = [0, 1, 2].map(|k| excess[k] - (of_second * q[k]).times(h));
-        // The undeformed helix.
-        error[0] = error[0].plus(self.chord - h);
+        let shortening = self.shortening(&turn);
+        let error: [D; 3] = std::array::from_fn(|k| (excess[k] - shortening[k]).plus(self.shortened[k]));
         let bent: [D; 3] = std::array::from_fn(|k| turn[k].plus(-self.turn[k]));
         let moment: [D; 3] = std::array::from_fn(|k| bent[k].times(rigidity[k] / h));
         let twisted = cross(&turn, &moment);
