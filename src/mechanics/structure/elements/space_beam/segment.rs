@@ -329,10 +329,11 @@ impl SpaceSegment {
                 row.iter_mut().zip(&across).for_each(|(value, across)| *value += along * across);
             }
         }
-        for row in 0..OF_MOTION {
-            for column in 0..row {
-                let mean = 0.5 * (matrix[row][column] + matrix[column][row]);
-                (matrix[row][column], matrix[column][row]) = (mean, mean);
+        // Products of the sums above differ by round-off across the diagonal.
+        let found = matrix;
+        for (row, values) in matrix.iter_mut().enumerate() {
+            for (value, across) in values.iter_mut().zip(&found) {
+                *value = 0.5 * (*value + across[row]);
             }
         }
         matrix
