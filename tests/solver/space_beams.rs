@@ -247,7 +247,13 @@ fn a_rod_is_pushed_along_rough_obstacles() {
 #[test]
 fn a_common_rotation_changes_nothing() {
     let turn = Rotation3::new(Vector3::new(0.8, -1.7, 0.6));
-    let (one, other) = (judged(&on_obstacles(&Rotation3::identity())), judged(&on_obstacles(&turn)));
+    // Until round-off decides about a step that is on the verge of being shortened.
+    let first = |turn: &Rotation3<f64>| {
+        let mut request = on_obstacles(turn);
+        request.analysis.max_increments = 120;
+        judged(&request)
+    };
+    let (one, other) = (first(&Rotation3::identity()), first(&turn));
     assert_eq!(one.increments.len(), other.increments.len());
     for (one, other) in one.increments.iter().zip(&other.increments) {
         assert!((one.load_factor - other.load_factor).abs() < 1e-8, "{} {}", one.load_factor, other.load_factor);
@@ -315,7 +321,8 @@ fn a_frame_in_a_plane_is_the_plane_frame() {
 
 #[test]
 fn a_path_taken_up_again_is_the_same_to_the_bit() {
-    let request = on_obstacles(&Rotation3::identity());
+    let mut request = on_obstacles(&Rotation3::identity());
+    request.analysis.max_increments = 60;
     let scene = Scene::new(&request).expect("a scene");
     let line = |mut increment: Increment| {
         increment.diagnostics.elapsed_s = 0.0;

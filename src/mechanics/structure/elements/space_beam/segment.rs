@@ -24,7 +24,7 @@
 
 use crate::mechanics::rotation::{polynomial, quaternion, sine_coefficient, sine_of_root};
 use crate::mechanics::structure::elements::space_beam::differential::{
-    Differential, Turn, WithGradient, WithHessian, added, cross, dot, scaled,
+    Differential, DifferentialQuaternion, WithGradient, WithHessian, added, cross, dot, scaled,
 };
 use nalgebra::{Matrix3, Quaternion, Vector3};
 
@@ -106,17 +106,17 @@ fn averages<D: Differential>(x: D) -> [D; 3] {
 }
 
 /// The quaternion of a rotation vector.
-fn turned_by<D: Differential>(vector: &[D; 3]) -> Turn<D> {
+fn turned_by<D: Differential>(vector: &[D; 3]) -> DifferentialQuaternion<D> {
     let quarter = dot(vector, vector).times(0.25);
     let [value, first, second, third] = sine_of_root(quarter.value());
     let x = quarter.value();
     let sine = quarter.map([value, first, second]);
     let cosine = quarter.map([value + 2.0 * x * first, 3.0 * first + 2.0 * x * second, 5.0 * second + 2.0 * x * third]);
-    Turn(cosine, scaled(sine.times(0.5), vector))
+    DifferentialQuaternion(cosine, scaled(sine.times(0.5), vector))
 }
 
 /// The rotation vector of a quaternion, below a full turn.
-fn vector_of<D: Differential>(Turn(real, vector): &Turn<D>) -> [D; 3] {
+fn vector_of<D: Differential>(DifferentialQuaternion(real, vector): &DifferentialQuaternion<D>) -> [D; 3] {
     let squared = dot(vector, vector);
     let (cosine, square) = (real.value(), squared.value());
     if cosine > 0.0 && square < 0.04 * cosine * cosine {
@@ -191,7 +191,8 @@ impl SpaceSegment {
         rotations: &[[D; 3]; 2],
         references: &[Quaternion<f64>; 2],
     ) -> ([D; 3], [D; 3]) {
-        let constant = |quaternion: &Quaternion<f64>| Turn::constant(quaternion.w, quaternion.imag().into());
+        let constant =
+            |quaternion: &Quaternion<f64>| DifferentialQuaternion::constant(quaternion.w, quaternion.imag().into());
         let ends = [0, 1].map(|end| turned_by(&rotations[end]).after(&constant(&references[end])));
         let into_axes = |vector: &[D; 3]| -> [D; 3] {
             std::array::from_fn(|row| {
@@ -199,14 +200,14 @@ impl SpaceSegment {
                 vector[0].times(axis[0]) + vector[1].times(axis[1]) + vector[2].times(axis[2])
             })
         };
-        let Turn(real, vector) = ends[0].conjugate().after(&ends[1]);
-        let mut between = Turn(real, into_axes(&vector));
+        let DifferentialQuaternion(real, vector) = ends[0].conjugate().after(&ends[1]);
+        let mut between = DifferentialQuaternion(real, into_axes(&vector));
         let mut sum = ends;
         if self.turn != [0.0; 3] {
             let half = self.half;
             between = constant(&half).after(&between).after(&constant(&half));
             let global: [f64; 3] = (self.axes * half.imag()).into();
-            let half = Turn::constant(half.w, global);
+            let half = DifferentialQuaternion::constant(half.w, global);
             sum = [ends[0].after(&half.conjugate()), ends[1].after(&half)];
         }
         let real = sum[0].0 + sum[1].0;
