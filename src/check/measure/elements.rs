@@ -38,11 +38,11 @@ pub(super) enum MeasuredElement {
 }
 
 /// What an element does to its nodes.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) enum MeasuredResponse {
     /// Of a bar or a spring.
     Forces(ElementResponse),
-    Beam(BeamResponse),
+    Beam(Box<BeamResponse>),
     /// Of a rotational spring: the moment of its first node on it, with its rounding error.
     Moment {
         node: usize,
@@ -124,8 +124,8 @@ impl MeasuredElement {
     /// The response to the given displacements and rotations of the nodes.
     pub fn response(&self, u: &[MeasuredVector], rotations: &[MeasuredVector]) -> MeasuredResponse {
         MeasuredResponse::Forces(match self {
-            Self::Beam(beam) => return MeasuredResponse::Beam(beam.response(u, rotations)),
-            Self::SpaceBeam(beam) => return MeasuredResponse::Beam(beam.response(u, rotations)),
+            Self::Beam(beam) => return MeasuredResponse::Beam(Box::new(beam.response(u, rotations))),
+            Self::SpaceBeam(beam) => return MeasuredResponse::Beam(Box::new(beam.response(u, rotations))),
             Self::RotationalSpring { node, other, stiffness } => {
                 let turn = rotations[*node].z - other.map_or(0.0, |other| rotations[other].z);
                 let turned = rotations[*node].z.abs().max(other.map_or(0.0, |other| rotations[other].z.abs()));

@@ -19,8 +19,8 @@ use crate::model::request::{BendingStiffness, Element as Posted, Model};
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 
 /// A number with its derivatives by the relative displacement and the spins of both ends.
-type Carried = DualNumber<9>;
-type CarriedVector = [Carried; 3];
+type MotionDual = DualNumber<9>;
+type MotionDualVector = [MotionDual; 3];
 
 /// A beam with its nodes numbered.
 #[derive(Debug, Clone, Copy)]
@@ -71,33 +71,33 @@ fn half_turned(rotation: &MeasuredVector) -> Quaternion<f64> {
     Quaternion::from_parts((0.5 * angle).cos(), rotation * factor)
 }
 
-fn constant(vector: &MeasuredVector) -> CarriedVector {
-    [vector.x, vector.y, vector.z].map(Carried::constant)
+fn constant(vector: &MeasuredVector) -> MotionDualVector {
+    [vector.x, vector.y, vector.z].map(MotionDual::constant)
 }
 
-fn dot(a: &CarriedVector, b: &CarriedVector) -> Carried {
+fn dot(a: &MotionDualVector, b: &MotionDualVector) -> MotionDual {
     a[0].by(b[0]).plus(a[1].by(b[1])).plus(a[2].by(b[2]))
 }
 
-fn cross(a: &CarriedVector, b: &CarriedVector) -> CarriedVector {
+fn cross(a: &MotionDualVector, b: &MotionDualVector) -> MotionDualVector {
     [(1, 2), (2, 0), (0, 1)].map(|(k, l)| a[k].by(b[l]).minus(a[l].by(b[k])))
 }
 
-fn sum(a: &CarriedVector, b: &CarriedVector) -> CarriedVector {
+fn sum(a: &MotionDualVector, b: &MotionDualVector) -> MotionDualVector {
     std::array::from_fn(|k| a[k].plus(b[k]))
 }
 
-fn scaled(factor: Carried, a: &CarriedVector) -> CarriedVector {
+fn scaled(factor: MotionDual, a: &MotionDualVector) -> MotionDualVector {
     a.map(|part| part.by(factor))
 }
 
-fn root(a: Carried) -> Carried {
+fn root(a: MotionDual) -> MotionDual {
     let value = a.0.sqrt();
     a.map(value, 0.5 / value)
 }
 
 /// `sin √x / √x`
-fn sine_of_root(x: Carried) -> Carried {
+fn sine_of_root(x: MotionDual) -> MotionDual {
     let value = x.0;
     if value < 1e-2 {
         let of = |a: f64, b: f64, c: f64, d: f64, e: f64| a + value * (b + value * (c + value * (d + value * e)));
@@ -110,17 +110,20 @@ fn sine_of_root(x: Carried) -> Carried {
 }
 
 /// A product of quaternions, each a number and a vector.
-fn product((a, u): &(Carried, CarriedVector), (b, v): &(Carried, CarriedVector)) -> (Carried, CarriedVector) {
+fn product(
+    (a, u): &(MotionDual, MotionDualVector),
+    (b, v): &(MotionDual, MotionDualVector),
+) -> (MotionDual, MotionDualVector) {
     (a.by(*b).minus(dot(u, v)), sum(&sum(&scaled(*a, v), &scaled(*b, u)), &cross(u, v)))
 }
 
-fn constant_turn(quaternion: &Quaternion<f64>) -> (Carried, CarriedVector) {
-    (Carried::constant(quaternion.w), constant(&quaternion.imag()))
+fn constant_turn(quaternion: &Quaternion<f64>) -> (MotionDual, MotionDualVector) {
+    (MotionDual::constant(quaternion.w), constant(&quaternion.imag()))
 }
 
 impl SpaceStretch {
     /// The excess of the deformed chord over the undeformed one, and `φ`, in the axes halfway.
-    fn strains(&self, relative: &MeasuredVector, ends: [Quaternion<f64>; 2]) -> (CarriedVector, CarriedVector) {
+    fn strains(&self, relative: &MeasuredVector, ends: [Quaternion<f64>; 2]) -> (MotionDualVector, MotionDualVector) {
         // A spin `w` changes the quaternion by `½ w q`.
         let carried = [0, 1].map(|end| {
             let mut own = constant_turn(&ends[end]);
@@ -133,9 +136,9 @@ impl SpaceStretch {
             }
             own
         });
-        let relative: CarriedVector = std::array::from_fn(|k| Carried::variable(relative[k], k));
+        let relative: MotionDualVector = std::array::from_fn(|k| MotionDual::variable(relative[k], k));
         let half = half_turned(&(self.turn * 0.5));
-        let in_axes = |vector: &CarriedVector| self.axes.map(|axis| dot(&constant(&axis), vector));
+        let in_axes = |vector: &MotionDualVector| self.axes.map(|axis| dot(&constant(&axis), vector));
         let back = (carried[0].0, carried[0].1.map(|part| part.times(-1.0)));
         let (real, vector) = product(&back, &carried[1]);
         let half_turn = constant_turn(&half);
@@ -148,12 +151,12 @@ impl SpaceStretch {
         let undeformed = constant(&(self.axes[0] * self.chord));
         let chord = sum(&relative, &undeformed);
         let across = cross(&v, &chord);
-        let twice = Carried::constant(2.0).over(w.by(w).plus(dot(&v, &v)));
+        let twice = MotionDual::constant(2.0).over(w.by(w).plus(dot(&v, &v)));
         let turned = scaled(twice, &sum(&scaled(w.times(-1.0), &across), &cross(&v, &across)));
         (in_axes(&sum(&relative, &turned)), Self::vector_of(real, &vector))
     }
 
-    fn vector_of(real: Carried, vector: &CarriedVector) -> CarriedVector {
+    fn vector_of(real: MotionDual, vector: &MotionDualVector) -> MotionDualVector {
         let squared = dot(vector, vector);
         if squared.0 < 1e-4 && real.0 > 0.0 {
             let s = squared.0;
@@ -166,17 +169,17 @@ impl SpaceStretch {
     }
 
     /// `W`
-    fn energy(&self, excess: &CarriedVector, turn: &CarriedVector) -> Carried {
-        let (h, zero) = (self.length, Carried::constant(0.0));
+    fn energy(&self, excess: &MotionDualVector, turn: &MotionDualVector) -> MotionDual {
+        let (h, zero) = (self.length, MotionDual::constant(0.0));
         let along = constant(&MeasuredVector::x());
         let (b, squared) = (cross(turn, &along), dot(turn, turn));
         let q = cross(turn, &b);
-        let chord = [excess[0].plus(Carried::constant(self.chord)), excess[1], excess[2]];
+        let chord = [excess[0].plus(MotionDual::constant(self.chord)), excess[1], excess[2]];
         let size = root(dot(&chord, &chord));
-        let first = scaled(Carried::constant(1.0).over(size), &chord);
+        let first = scaled(MotionDual::constant(1.0).over(size), &chord);
         let beside = if chord[1].0.abs() < chord[2].0.abs() { MeasuredVector::y() } else { MeasuredVector::z() };
         let second = cross(&first, &constant(&beside));
-        let second = scaled(Carried::constant(1.0).over(root(dot(&second, &second))), &second);
+        let second = scaled(MotionDual::constant(1.0).over(root(dot(&second, &second))), &second);
         let basis = [first, second, cross(&first, &second)];
         // `∫ v - e dη` and `∫ v vᵀ dη`, in the basis.
         let (mut bent, mut squares) = ([zero; 3], [[zero; 3]; 3]);
@@ -194,16 +197,16 @@ impl SpaceStretch {
                 }
             }
         });
-        let own_change: CarriedVector = std::array::from_fn(|k| turn[k].minus(Carried::constant(self.turn[k])));
-        let moment: CarriedVector = std::array::from_fn(|k| own_change[k].times(self.rigidity[k] / h));
-        let soft = |vector: &CarriedVector| -> CarriedVector {
+        let own_change: MotionDualVector = std::array::from_fn(|k| turn[k].minus(MotionDual::constant(self.turn[k])));
+        let moment: MotionDualVector = std::array::from_fn(|k| own_change[k].times(self.rigidity[k] / h));
+        let soft = |vector: &MotionDualVector| -> MotionDualVector {
             std::array::from_fn(|k| vector[k].times(self.rigidity[k].recip()))
         };
         let y = cross(turn, &moment);
         let levers = basis.map(|axis| cross(&chord, &axis));
-        let error: CarriedVector = std::array::from_fn(|k| {
+        let error: MotionDualVector = std::array::from_fn(|k| {
             let whole = excess[k].minus(bent[k].times(h));
-            if k == 0 { whole.plus(Carried::constant(self.chord - h)) } else { whole }
+            if k == 0 { whole.plus(MotionDual::constant(self.chord - h)) } else { whole }
         });
         let (axial, shear) = (self.axial.recip(), self.shear_flexibility);
         let mut rows = [[zero; 4]; 3];
@@ -217,7 +220,7 @@ impl SpaceStretch {
                     dot(&levers[row], &soft(&levers[column])).times(h / 12.0)
                 };
                 rows[row][column] =
-                    squares[row][column].times((axial - shear) * h).plus(of_lever).plus(Carried::constant(identity));
+                    squares[row][column].times((axial - shear) * h).plus(of_lever).plus(MotionDual::constant(identity));
             }
             let of_twist = if row == 0 { zero } else { dot(&levers[row], &soft(&y)).times(h / 12.0) };
             rows[row][3] = dot(&basis[row], &error).minus(of_twist);

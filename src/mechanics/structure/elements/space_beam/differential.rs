@@ -200,9 +200,9 @@ pub(super) fn added<D: Differential>(a: &[D; 3], b: &[D; 3]) -> [D; 3] {
 
 /// A quaternion: the real part, then the vector.
 #[derive(Clone, Copy)]
-pub(super) struct Turn<D>(pub D, pub [D; 3]);
+pub(super) struct DifferentialQuaternion<D>(pub D, pub [D; 3]);
 
-impl<D: Differential> Turn<D> {
+impl<D: Differential> DifferentialQuaternion<D> {
     pub fn constant(real: f64, vector: [f64; 3]) -> Self {
         Self(D::constant(real), vector.map(D::constant))
     }

@@ -24,7 +24,7 @@
 
 use crate::mechanics::rotation::{polynomial, quaternion, sine_coefficient, sine_of_root};
 use crate::mechanics::structure::elements::space_beam::differential::{
-    Differential, Turn, WithGradient, WithHessian, added, cross, dot, scaled,
+    Differential, DifferentialQuaternion, WithGradient, WithHessian, added, cross, dot, scaled,
 };
 use nalgebra::{Matrix3, Quaternion, Vector3};
 
@@ -49,8 +49,13 @@ pub(super) struct SpaceSegment {
     chord: f64,
     /// `h`
     length: f64,
-    /// `φ_0`, across the chord.
+    /// `φ_0`, across the chord, as the formulas of the deformed segment give it at rest: the strains there are zero, not
+    /// round-off.
     turn: [f64; 3],
+    /// Half of the turn.
+    half: Quaternion<f64>,
+    /// `h F q` at rest.
+    shortened: [f64; 3],
     pub stiffness: SpaceSectionStiffness,
 }
 
@@ -101,17 +106,17 @@ fn averages<D: Differential>(x: D) -> [D; 3] {
 }
 
 /// The quaternion of a rotation vector.
-fn turned_by<D: Differential>(vector: &[D; 3]) -> Turn<D> {
+fn turned_by<D: Differential>(vector: &[D; 3]) -> DifferentialQuaternion<D> {
     let quarter = dot(vector, vector).times(0.25);
     let [value, first, second, third] = sine_of_root(quarter.value());
     let x = quarter.value();
     let sine = quarter.map([value, first, second]);
     let cosine = quarter.map([value + 2.0 * x * first, 3.0 * first + 2.0 * x * second, 5.0 * second + 2.0 * x * third]);
-    Turn(cosine, scaled(sine.times(0.5), vector))
+    DifferentialQuaternion(cosine, scaled(sine.times(0.5), vector))
 }
 
 /// The rotation vector of a quaternion, below a full turn.
-fn vector_of<D: Differential>(Turn(real, vector): &Turn<D>) -> [D; 3] {
+fn vector_of<D: Differential>(DifferentialQuaternion(real, vector): &DifferentialQuaternion<D>) -> [D; 3] {
     let squared = dot(vector, vector);
     let (cosine, square) = (real.value(), squared.value());
     if cosine > 0.0 && square < 0.04 * cosine * cosine {
@@ -147,7 +152,13 @@ impl SpaceSegment {
         let mut own: [f64; 3] = axes.tr_mul(&turn).into();
         own[0] = 0.0;
         let length = size / sine_of_root(0.25 * turn.norm_squared())[0];
-        Self { axes, chord: size, length, turn: own, stiffness }
+        let half = quaternion(&own.map(|part| 0.5 * part));
+        let mut segment = Self { axes, chord: size, length, turn: own, half, shortened: [0.0; 3], stiffness };
+        if own != [0.0; 3] {
+            (_, segment.turn) = segment.strains([0.0; 3], &[[0.0; 3]; 2], &[Quaternion::identity(); 2]);
+            segment.shortened = segment.shortening(&segment.turn);
+        }
+        segment
     }
 
     pub fn length(&self) -> f64 {
@@ -180,7 +191,8 @@ impl SpaceSegment {
         rotations: &[[D; 3]; 2],
         references: &[Quaternion<f64>; 2],
     ) -> ([D; 3], [D; 3]) {
-        let constant = |quaternion: &Quaternion<f64>| Turn::constant(quaternion.w, quaternion.imag().into());
+        let constant =
+            |quaternion: &Quaternion<f64>| DifferentialQuaternion::constant(quaternion.w, quaternion.imag().into());
         let ends = [0, 1].map(|end| turned_by(&rotations[end]).after(&constant(&references[end])));
         let into_axes = |vector: &[D; 3]| -> [D; 3] {
             std::array::from_fn(|row| {
@@ -188,14 +200,14 @@ impl SpaceSegment {
                 vector[0].times(axis[0]) + vector[1].times(axis[1]) + vector[2].times(axis[2])
             })
         };
-        let Turn(real, vector) = ends[0].conjugate().after(&ends[1]);
-        let mut between = Turn(real, into_axes(&vector));
+        let DifferentialQuaternion(real, vector) = ends[0].conjugate().after(&ends[1]);
+        let mut between = DifferentialQuaternion(real, into_axes(&vector));
         let mut sum = ends;
         if self.turn != [0.0; 3] {
-            let half = quaternion(&self.turn.map(|part| 0.5 * part));
+            let half = self.half;
             between = constant(&half).after(&between).after(&constant(&half));
             let global: [f64; 3] = (self.axes * half.imag()).into();
-            let half = Turn::constant(half.w, global);
+            let half = DifferentialQuaternion::constant(half.w, global);
             sum = [ends[0].after(&half.conjugate()), ends[1].after(&half)];
         }
         let real = sum[0].0 + sum[1].0;
@@ -210,6 +222,15 @@ impl SpaceSegment {
         (into_axes(&added(&relative, &turned)), vector_of(&between))
     }
 
+    /// `h F q`
+    #[inline(always)]
+    fn shortening<D: Differential>(&self, turn: &[D; 3]) -> [D; 3] {
+        let squares = turn.map(|part| part * part);
+        let across = squares[1] + squares[2];
+        let [of_second, ..] = averages(squares[0] + across);
+        [-across, turn[0] * turn[1], turn[0] * turn[2]].map(|part| (of_second * part).times(self.length))
+    }
+
     /// `W` by the excess of the chord and `φ`.
     #[inline(always)]
     fn energy_of<D: Differential>(&self, excess: [D; 3], turn: [D; 3]) -> D {
@@ -221,9 +242,8 @@ impl SpaceSegment {
         let zero = D::constant(0.0);
         let (b, q) = ([zero, turn[2], -turn[1]], [-across, turn[0] * turn[1], turn[0] * turn[2]]);
         let chord = [excess[0].plus(self.chord), excess[1], excess[2]];
-        let mut error = [0, 1, 2].map(|k| excess[k] - (of_second * q[k]).times(h));
-        // The undeformed helix.
-        error[0] = error[0].plus(self.chord - h);
+        let shortening = self.shortening(&turn);
+        let error: [D; 3] = std::array::from_fn(|k| (excess[k] - shortening[k]).plus(self.shortened[k]));
         let bent: [D; 3] = std::array::from_fn(|k| turn[k].plus(-self.turn[k]));
         let moment: [D; 3] = std::array::from_fn(|k| bent[k].times(rigidity[k] / h));
         let twisted = cross(&turn, &moment);
@@ -310,10 +330,11 @@ impl SpaceSegment {
                 row.iter_mut().zip(&across).for_each(|(value, across)| *value += along * across);
             }
         }
-        for row in 0..OF_MOTION {
-            for column in 0..row {
-                let mean = 0.5 * (matrix[row][column] + matrix[column][row]);
-                (matrix[row][column], matrix[column][row]) = (mean, mean);
+        // Products of the sums above differ by round-off across the diagonal.
+        let found = matrix;
+        for (row, values) in matrix.iter_mut().enumerate() {
+            for (value, across) in values.iter_mut().zip(&found) {
+                *value = 0.5 * (*value + across[row]);
             }
         }
         matrix

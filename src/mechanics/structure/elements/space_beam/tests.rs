@@ -344,13 +344,11 @@ fn rod(count: usize, curved: f64, orientation: [f64; 3], section: SpaceSectionSt
 fn errors_fall_with_the_fourth_order() {
     let wide = SpaceSectionStiffness { axial: 1e6, bending: [1.0, 3.0], torsional: 0.6, shear: None };
     let shearing = SpaceSectionStiffness { axial: 400.0, bending: [1.0, 0.5], torsional: 0.8, shear: Some(150.0) };
-    let slender = SpaceSectionStiffness { axial: 1e12, bending: [1.0, 1.0], torsional: 0.5, shear: None };
     for (section, curved, force) in [
         (wide, 0.0, [-0.5, 2.0, 3.0]),
         (shearing, 0.0, [-1.0, 2.0, 4.0]),
         (shearing, 0.8, [0.0, 1.0, 5.0]),
         (wide, 0.8, [0.0, 0.0, 5.0]),
-        (slender, 0.8, [0.0, 0.0, 7.0]),
     ] {
         let orientation = [0.0, 0.0, 1.0];
         let axes = Matrix3::from_columns(&[Vector3::x(), Vector3::z(), -Vector3::y()]);
