@@ -151,9 +151,9 @@ impl StepStart<'_> {
         self.settle_by(system, guess, closing, &mut None, work)
     }
 
-    pub(crate) fn settle_by(
-        &self,
-        mut system: ModeSystem<'_>,
+    pub(crate) fn settle_by<'a>(
+        &'a self,
+        mut system: ModeSystem<'a>,
         guess: State,
         closing: &dyn ClosingEquation,
         serving: &mut Option<SystemFactorisation>,
@@ -166,6 +166,7 @@ impl StepStart<'_> {
             return Ok(reached);
         }
         let guess = singular_step::guess_beside(self, closing).unwrap_or(guess);
+        system = system.along(self.rate);
         slip_turn_update::mark_loose(&mut system, self.rate);
         let corrected = newton::correct_from(&system, system.iterate(guess), closing, self.force_scale, serving, work)
             .map_err(Refused::Newton)?;

@@ -43,7 +43,7 @@ pub(crate) fn held_across(
     if !start.is_singular || start.beside.is_some() {
         return None;
     }
-    let mut system = ModeSystem::new(start.loading, start.modes, start.state);
+    let mut system = ModeSystem::new(start.loading, start.modes, start.state).along(start.rate);
     if !null_motion_suppression::suppress_open_motions(&mut system, start.state, start.rate) {
         return None;
     }

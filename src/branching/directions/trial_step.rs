@@ -157,7 +157,7 @@ fn stepped(
     step: f64,
     force_scale: f64,
 ) -> Option<(Corrected, Rate)> {
-    let system = ModeSystem::new(loading, modes, state);
+    let system = ModeSystem::new(loading, modes, state).along(rate);
     let closing = ArcLengthEquation { from: state, step };
     let mut serving = None;
     let guess = system.iterate(state.advanced(rate, step));

@@ -236,7 +236,7 @@ mod tests {
                 beside: None,
             };
             let broken = |state: &State| simultaneous::broken(&start, &here.modes, state, forces);
-            let system = ModeSystem::new(loading, &here.modes, &here.state);
+            let system = ModeSystem::new(loading, &here.modes, &here.state).along(rate);
             let guess = here.state.advanced(rate, step);
             let Some((far, factorisation)) =
                 single_iteration::iterated_once(&system, guess, &closing, &mut Work::default())

@@ -156,7 +156,7 @@ pub(crate) fn join_foreseen(
     };
     let foreseen: Vec<EventFunction> = event_functions.iter().copied().filter(passes).collect();
     joinable(start, &event_functions, &foreseen, step)?;
-    let system = ModeSystem::new(start.loading, start.modes, start.state);
+    let system = ModeSystem::new(start.loading, start.modes, start.state).along(start.rate);
     let closing = ArcLengthEquation { from: start.state, step };
     let (state, factorisation) =
         single_iteration::iterated_once(&system, start.state.advanced(start.rate, step), &closing, work)?;
@@ -278,7 +278,7 @@ fn end_modes(
             }
             roughly = false;
         }
-        let system = ModeSystem::new(start.loading, &modes, start.state);
+        let system = ModeSystem::new(start.loading, &modes, start.state).along(start.rate);
         let closing = ArcLengthEquation { from: start.state, step: far.step };
         // Each mode has its own equations.
         (*last, linearised) = (None, None);

@@ -48,12 +48,10 @@ fn each_stiffness(structure: &Structure, iterate: &Iterate, add: &mut impl FnMut
     let displacement = &iterate.state.displacement;
     match &iterate.forces {
         None => structure.each_stiffness(displacement, add),
-        Some(forces) => structure.each_mixed_stiffness(
-            displacement,
-            forces,
-            |element, own, out| element.write_stiffness(own, out),
-            add,
-        ),
+        Some(forces) => {
+            let whole = |element: &dyn FiniteElement, own: &[f64], out: &mut [f64]| element.write_stiffness(own, out);
+            forces.each_stiffness(structure, displacement, whole, add);
+        }
     }
 }
 
@@ -63,7 +61,7 @@ fn each_stiffness_across(structure: &Structure, iterate: &Iterate, add: &mut imp
     let across = |element: &dyn FiniteElement, own: &[f64], out: &mut [f64]| element.write_stiffness_across(own, out);
     match &iterate.forces {
         None => structure.each_stiffness_across(displacement, add),
-        Some(forces) => structure.each_mixed_stiffness(displacement, forces, across, add),
+        Some(forces) => forces.each_stiffness(structure, displacement, across, add),
     }
 }
 

@@ -35,7 +35,7 @@ use crate::mechanics::multi_contact::reaction_sharing;
 use crate::mechanics::multi_contact::spatial::{Edge, beside};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_contact_forces::{free_directions, total_force};
-use crate::mechanics::problem::state::State;
+use crate::mechanics::problem::state::{Rate, State};
 use crate::mechanics::structure::mixed_iteration::IndependentForces;
 use nalgebra::DVector;
 use smallvec::SmallVec;
@@ -131,6 +131,8 @@ pub struct ModeSystem<'a> {
     /// First row and column of each closed contact.
     first_of: SmallVec<[usize; 4]>,
     pub(crate) size: usize,
+    /// Rate of the path at the anchor, where it is known.
+    pub(crate) along: Option<&'a Rate>,
     /// Whether a step shorter than the required one serves as well.
     pub(crate) may_be_shorter: bool,
     /// Suppressed motions: see `null_motion_suppression`.
@@ -192,11 +194,17 @@ impl<'a> ModeSystem<'a> {
             modes,
             first_of,
             size: next,
+            along: None,
             may_be_shorter: false,
             suppressed: Vec::new(),
             holdings: OnceCell::new(),
             held: OnceCell::new(),
         }
+    }
+
+    /// The same equations, for iterations along a path of this rate at the anchor.
+    pub fn along(self, rate: &'a Rate) -> Self {
+        Self { along: Some(rate), ..self }
     }
 
     /// Number of unknowns.
@@ -256,10 +264,20 @@ impl<'a> ModeSystem<'a> {
         Iterate { state, directions, forces: None }
     }
 
-    /// Lets the forces in elements vary in an iteration from a guess, where the elements have such forces. They start as
-    /// those at the anchor: the displacements of a guess may strain stiff elements far more than the solution's do.
+    /// Lets the forces in elements vary in an iteration from a guess, where the elements have such forces. They start
+    /// from those at the anchor and follow the path's rate: the displacements of a guess may strain stiff elements far
+    /// more than the solution's do. Without the change along the path, a step from a bifurcation point would begin at
+    /// the critical forces, with singular equations.
     pub(crate) fn begin_iteration(&self, guess: &mut Iterate) {
-        guess.forces = self.loading.structure.independent_forces(&self.anchor.displacement);
+        let Self { anchor, loading, .. } = self;
+        guess.forces = IndependentForces::at(loading.structure, &anchor.displacement);
+        if let (Some(forces), Some(rate)) = (&mut guess.forces, self.along) {
+            let square = rate.product(rate);
+            if square > 0.0 {
+                let length = anchor.product_of_chord(&guess.state, rate) / square;
+                forces.advance(loading.structure, &anchor.displacement, |freedom| length * rate.displacement[freedom]);
+            }
+        }
     }
 
     /// Resolves the force of a sticking contact in the frame at the anchor. A guess may have moved the sticking node on

@@ -113,7 +113,8 @@ pub(crate) fn correct_by(system: &ModeSystem<'_>, iterate: &mut Iterate, values:
     }
     residual::make_consistent(system, iterate);
     if let (Some(before), Some(forces)) = (before, &mut iterate.forces) {
-        system.loading.structure.advance_independent_forces(&before, &iterate.state.displacement, forces);
+        let after = &iterate.state.displacement;
+        forces.advance(system.loading.structure, &before, |freedom| after[freedom] - before[freedom]);
     }
 }
 

@@ -66,7 +66,7 @@ pub(crate) fn make_mixed(system: &ModeSystem<'_>, iterate: &Iterate, values: &mu
     let Some(forces) = &iterate.forces else { return };
     let structure = system.loading.structure;
     force.fill(0.0);
-    structure.add_mixed_residual(&iterate.state.displacement, forces, force);
+    forces.add_to_residual(structure, &iterate.state.displacement, force);
     values.iter_mut().zip(&structure.freedom_of).for_each(|(value, freedom)| *value += force[*freedom]);
 }
 

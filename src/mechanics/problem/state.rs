@@ -74,16 +74,20 @@ impl State {
 impl State {
     /// Cosine of the angle between the chord to another state, at this distance, and a rate; 1 for no chord.
     pub fn cosine_of_chord(&self, other: &Self, distance: f64, rate: &Rate) -> f64 {
-        let along: f64 = other
+        let size = distance * rate.size();
+        if size > 0.0 { (self.product_of_chord(other, rate) / size).clamp(-1.0, 1.0) } else { 1.0 }
+    }
+
+    /// Inner product of the chord to another state and a rate.
+    pub fn product_of_chord(&self, other: &Self, rate: &Rate) -> f64 {
+        other
             .displacement
             .iter()
             .zip(&self.displacement)
             .zip(&rate.displacement)
             .map(|((to, from), rate)| (to - from) * rate)
             .sum::<f64>()
-            + (other.load - self.load) * rate.load;
-        let size = distance * rate.size();
-        if size > 0.0 { (along / size).clamp(-1.0, 1.0) } else { 1.0 }
+            + (other.load - self.load) * rate.load
     }
 }
 

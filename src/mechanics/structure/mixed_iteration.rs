@@ -26,27 +26,27 @@ pub struct IndependentForces(Vec<f64>);
 /// Numbers over the degrees of freedom of an element.
 type ElementVector = SmallVec<[f64; 12]>;
 
-impl Structure {
-    /// The independent forces of the elements at given displacements; `None` where no element has any.
-    pub fn independent_forces(&self, displacement: &[f64]) -> Option<IndependentForces> {
-        if !self.has_independent_forces() {
+impl IndependentForces {
+    /// The forces at given displacements; `None` where no element has independent forces.
+    pub fn at(structure: &Structure, displacement: &[f64]) -> Option<Self> {
+        if !structure.has_independent_forces() {
             return None;
         }
         let mut forces = Vec::new();
-        for at in self.elements() {
+        for at in structure.elements() {
             let first = forces.len();
             forces.resize(first + at.element.independent_forces(), 0.0);
             if forces.len() > first {
                 at.element.write_independent_forces(&gathered(at, displacement), &mut forces[first..]);
             }
         }
-        Some(IndependentForces(forces))
+        Some(Self(forces))
     }
 
     /// Adds to the forces on all degrees of freedom what the residual of the mixed form exceeds `f_int(u)` by.
-    pub fn add_mixed_residual(&self, displacement: &[f64], forces: &IndependentForces, unbalanced: &mut [f64]) {
+    pub fn add_to_residual(&self, structure: &Structure, displacement: &[f64], unbalanced: &mut [f64]) {
         let (mut of_motion, mut mixed) = (ElementVector::new(), ElementVector::new());
-        each(self, &forces.0, |at, own_forces| {
+        each(structure, &self.0, |at, own_forces| {
             let own = gathered(at, displacement);
             of_motion.resize(own.len(), 0.0);
             mixed.resize(own.len(), 0.0);
@@ -58,17 +58,17 @@ impl Structure {
         });
     }
 
-    /// As [`each_stiffness`](Self::each_stiffness), with the tangents of the mixed form; the same entries in the same
-    /// order. `write_stiffness` writes the tangents of the elements without independent forces.
-    pub fn each_mixed_stiffness(
+    /// As [`Structure::each_stiffness`], with the tangents of the mixed form; the same entries in the same order.
+    /// `write_stiffness` writes the tangents of the elements without independent forces.
+    pub fn each_stiffness(
         &self,
+        structure: &Structure,
         displacement: &[f64],
-        forces: &IndependentForces,
         write_stiffness: impl Fn(&dyn FiniteElement, &[f64], &mut [f64]),
         add: &mut impl FnMut(usize, usize, f64),
     ) {
         let mut tangent: SmallVec<[f64; 144]> = SmallVec::new();
-        each_of_all(self, &forces.0, |at, own_forces| {
+        each_of_all(structure, &self.0, |at, own_forces| {
             let own = gathered(at, displacement);
             tangent.resize(own.len() * own.len(), 0.0);
             if own_forces.is_empty() {
@@ -80,19 +80,20 @@ impl Structure {
         });
     }
 
-    /// Changes the forces of an iterate that moves from one displacement to another.
-    pub fn advance_independent_forces(&self, from: &[f64], to: &[f64], forces: &mut IndependentForces) {
-        let mut change = ElementVector::new();
-        let mut left = forces.0.as_mut_slice();
-        for at in self.elements() {
+    /// Changes the forces by the linear equations of the mixed form: `change` gives the change of each degree of freedom
+    /// from the displacements `from`.
+    pub fn advance(&mut self, structure: &Structure, from: &[f64], change: impl Fn(usize) -> f64) {
+        let mut own_change = ElementVector::new();
+        let mut left = self.0.as_mut_slice();
+        for at in structure.elements() {
             let (own_forces, others) = std::mem::take(&mut left).split_at_mut(at.element.independent_forces());
             left = others;
             if own_forces.is_empty() {
                 continue;
             }
-            change.clear();
-            change.extend(at.freedoms.iter().map(|freedom| to[*freedom] - from[*freedom]));
-            at.element.advance_independent_forces(&gathered(at, from), &change, own_forces);
+            own_change.clear();
+            own_change.extend(at.freedoms.iter().map(|freedom| change(*freedom)));
+            at.element.advance_independent_forces(&gathered(at, from), &own_change, own_forces);
         }
     }
 }
@@ -142,12 +143,12 @@ mod tests {
     /// The size of the correction in each iteration from the beam at rest, with a force at the tip.
     fn corrections(structure: &Structure, load: f64) -> (Vec<f64>, Vec<f64>) {
         let mut displacement = vec![0.0; structure.freedoms()];
-        let mut forces = structure.independent_forces(&displacement).expect("beams have independent forces");
+        let mut forces = IndependentForces::at(structure, &displacement).expect("beams have independent forces");
         let mut corrections = Vec::new();
         for _ in 0..10 {
             let mut unbalanced = vec![0.0; structure.freedoms()];
             structure.internal_force(&displacement, &mut unbalanced);
-            structure.add_mixed_residual(&displacement, &forces, &mut unbalanced);
+            forces.add_to_residual(structure, &displacement, &mut unbalanced);
             unbalanced[structure.translations_of(ELEMENTS).start + 1] -= load;
             let unknowns = structure.unknowns();
             let mut tangent = DMatrix::zeros(unknowns, unknowns);
@@ -157,12 +158,12 @@ mod tests {
                 }
             };
             let none = |_: &dyn FiniteElement, _: &[f64], _: &mut [f64]| unreachable!("all elements are beams");
-            structure.each_mixed_stiffness(&displacement, &forces, none, &mut add);
+            forces.each_stiffness(structure, &displacement, none, &mut add);
             let residual = DVector::from_iterator(unknowns, structure.freedom_of.iter().map(|k| unbalanced[*k]));
             let correction = tangent.lu().solve(&residual).expect("the tangent is regular");
             let before = displacement.clone();
             structure.freedom_of.iter().zip(&correction).for_each(|(k, value)| displacement[*k] -= value);
-            structure.advance_independent_forces(&before, &displacement, &mut forces);
+            forces.advance(structure, &before, |k| displacement[k] - before[k]);
             corrections.push(correction.norm());
         }
         (corrections, displacement)
@@ -188,16 +189,16 @@ mod tests {
     fn at_the_forces_of_the_displacements_the_mixed_form_is_the_usual_one() {
         let structure = cantilever(30.0);
         let displacement: Vec<f64> = (0..structure.freedoms()).map(|k| 0.1 * (1.3 * k as f64).sin()).collect();
-        let forces = structure.independent_forces(&displacement).expect("beams have independent forces");
+        let forces = IndependentForces::at(&structure, &displacement).expect("beams have independent forces");
         let mut excess = vec![0.0; structure.freedoms()];
-        structure.add_mixed_residual(&displacement, &forces, &mut excess);
+        forces.add_to_residual(&structure, &displacement, &mut excess);
         let mut usual = Vec::new();
         structure.each_stiffness(&displacement, &mut |row, column, value| usual.push((row, column, value)));
         let largest = usual.iter().fold(0.0_f64, |most, (.., value)| most.max(value.abs()));
         assert!(excess.iter().all(|value| value.abs() < 1e-14 * largest));
         let mut expected = usual.iter();
         let none = |_: &dyn FiniteElement, _: &[f64], _: &mut [f64]| unreachable!("all elements are beams");
-        structure.each_mixed_stiffness(&displacement, &forces, none, &mut |row, column, value| {
+        forces.each_stiffness(&structure, &displacement, none, &mut |row, column, value| {
             let (of_row, of_column, usual) = expected.next().expect("as many entries");
             assert!((row, column) == (*of_row, *of_column) && (value - usual).abs() < 1e-14 * largest);
         });
@@ -207,8 +208,8 @@ mod tests {
             let moved: Vec<f64> =
                 displacement.iter().enumerate().map(|(k, value)| value + step * (0.7 * k as f64).cos()).collect();
             let mut followed = forces.clone();
-            structure.advance_independent_forces(&displacement, &moved, &mut followed);
-            let exact = structure.independent_forces(&moved).expect("beams have independent forces");
+            followed.advance(&structure, &displacement, |k| moved[k] - displacement[k]);
+            let exact = IndependentForces::at(&structure, &moved).expect("beams have independent forces");
             followed.0.iter().zip(&exact.0).fold(0.0_f64, |most, (one, other)| most.max((one - other).abs()))
         });
         assert!((one / other - 4.0).abs() < 0.1, "{one:e} {other:e}");
