@@ -78,11 +78,14 @@ const AT_END_IN_SPACE: [&str; 6] =
     ["axial_force", "shear_force.1", "shear_force.2", "torsional_moment", "bending_moment.1", "bending_moment.2"];
 
 /// The same where columns are apart from those of bars and springs, in files of tables and of cells.
+#[cfg(feature = "server")]
 const BEAM_FORCES: [&str; 3] = ["beam_axial_force", "shear_force", "bending_moment"];
+#[cfg(feature = "server")]
 const BEAM_FORCES_IN_SPACE: [&str; 6] =
     ["beam_axial_force", "shear_force_1", "shear_force_2", "torsional_moment", "bending_moment_1", "bending_moment_2"];
 
 /// The names of what a beam's end has, by the dimension of the space, in the order of `BeamEndForces::values`.
+#[cfg(feature = "server")]
 pub(crate) fn beam_forces(dimension: usize) -> &'static [&'static str] {
     if dimension == 2 { &BEAM_FORCES } else { &BEAM_FORCES_IN_SPACE }
 }

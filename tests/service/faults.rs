@@ -98,7 +98,7 @@ async fn a_full_disk_fails_the_job_keeps_what_is_stored_and_passes() {
     let job = server.ended(&id).await;
     assert_eq!(job["status"], "failed");
     assert!(job["error"].as_str().expect("a text").contains("disk that holds the database is full"), "{job}");
-    assert_eq!(job["progress"]["increments"], 5);
+    assert_eq!(job["progress"]["increments"], 4);
     store.full.store(false, Ordering::Relaxed);
     let next = server.submit(&request("another", 5)).await;
     assert_eq!(server.ended(&next).await["status"], "completed");

@@ -17,7 +17,12 @@ use axum::response::Response;
 /// goes down the stream ends after a `retry:`.
 #[utoipa::path(
     get, path = "/v1/changes", tag = document::JOBS, operation_id = "stream_changes",
-    params(("Last-Event-ID" = Option<String>, Header, description = "Id of the last event received.")),
+    params((
+        "Last-Event-ID" = Option<String>,
+        Header,
+        pattern = "^[0-9]{1,18}-[0-9a-f]{32}$",
+        description = "Id of the last event received.",
+    )),
     responses((status = 200, description = "Changes in their order, without end.", content(
         (ChangeEvent = "text/event-stream")
     )))
