@@ -13,16 +13,11 @@ use axum::response::Response;
 /// Server-sent events. `changed` has the job, study or sweep as it is now, in short; `deleted` its id. Changes that come
 /// shortly after one another are told as one. Without `Last-Event-ID` the first event is `begin`, whose id is the place from
 /// which changes are told: list what is there after it. A client that comes back with `Last-Event-ID` gets what has
-/// changed since, and deletions of the last day; where the id is of another database, `begin` comes again. When the service
-/// goes down the stream ends after a `retry:`.
+/// changed since, and deletions of the last day; where the id is none of this database, `begin` comes again. When the
+/// service goes down the stream ends after a `retry:`.
 #[utoipa::path(
     get, path = "/v1/changes", tag = document::JOBS, operation_id = "stream_changes",
-    params((
-        "Last-Event-ID" = Option<String>,
-        Header,
-        pattern = "^[0-9]{1,18}-[0-9a-f]{32}$",
-        description = "Id of the last event received.",
-    )),
+    params(("Last-Event-ID" = Option<String>, Header, description = "Id of the last event received.")),
     responses((status = 200, description = "Changes in their order, without end.", content(
         (ChangeEvent = "text/event-stream")
     )))

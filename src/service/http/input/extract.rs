@@ -142,11 +142,10 @@ pub fn last_event_id(event: &str, headers: &HeaderMap) -> Result<Option<u64>, Pr
     text.parse().ok().filter(|index| *index <= LARGEST_INDEX).map(Some).ok_or_else(refuse)
 }
 
-/// The `Last-Event-ID` header of the feed of changes: the id of the last event the client has.
+/// The `Last-Event-ID` header of the feed of changes: the place of the last event the client has; `None` too where no event
+/// of such a feed has this id, so that a client begins anew instead of failing for good.
 pub fn feed_position(headers: &HeaderMap) -> Result<Option<FeedPosition>, Problem> {
-    let Some(value) = only("Last-Event-ID", headers)? else { return Ok(None) };
-    let refuse = || Problem::parameter("Last-Event-ID", "the id of an event of this feed is expected");
-    value.to_str().ok().and_then(change::position).map(Some).ok_or_else(refuse)
+    Ok(only("Last-Event-ID", headers)?.and_then(|value| change::position(value.to_str().ok()?)))
 }
 
 /// An index that is not larger than the largest one.
