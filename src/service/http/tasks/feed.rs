@@ -27,7 +27,7 @@ const GATHERED: Duration = Duration::from_millis(100);
 /// Streams what changes from now on, or has changed since the event that the client had last.
 ///
 /// # Errors
-/// A header `Last-Event-ID` that no event has had.
+/// The header `Last-Event-ID` is given more than once.
 pub fn stream_changes(requester: Requester, headers: &HeaderMap) -> Result<Response, Problem> {
     let Requester { service, caller } = requester;
     let after = feed_position(headers)?;
