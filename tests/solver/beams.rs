@@ -1,6 +1,7 @@
 //! Plane beams beside exact solutions: roll-up, elastica, Lee's frame, an arch on a rough floor.
 
-use crate::common::paths::{Traced, judged, typed};
+use crate::common::paths::{Traced, judged, request, typed};
+use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
 use arcslip::result::increment::{Increment, PointKind, Status};
 use serde_json::{Value, json};
@@ -287,19 +288,42 @@ fn mistakes_in_beams_are_told() {
     };
     /// A change of the request, and what the answer has to say.
     type Case<'a> = (fn(&mut Value), &'a [&'a str]);
-    let cases: [Case<'_>; 6] = [
+    let cases: [Case<'_>; 8] = [
         (|all| all["model"]["supports"]["c"] = json!(["y", "rz"]), &["model.supports.c[1]", "`c` has no rotation"]),
         (|all| all["model"]["stages"][0]["moments"] = json!({"c": 1}), &["stages[0].moments.c", "has no rotation"]),
         (
             |all| all["model"]["elements"][0]["releases"] = json!({"c": ["rz"]}),
             &["elements[0].releases.c", "is no end of this beam; `a` or `b` would do"],
         ),
-        (|all| all["model"]["elements"][0]["releases"] = json!({"b": ["x"]}), &["releases.b[0]", "`rz` once"]),
+        (|all| all["model"]["elements"][0]["releases"] = json!({"b": ["mz"]}), &["releases.b[0]", "`rz`"]),
+        (|all| all["model"]["elements"][0]["releases"] = json!({"b": ["rz", "rz"]}), &["releases.b[1]", "`rz` once"]),
+        (
+            |all| all["model"]["stages"][0]["displacements"] = json!({"a": [0]}),
+            &["displacements.a", "found 1 numbers; 2 are expected, or 3 with the rotations"],
+        ),
         (|all| all["model"]["elements"][0]["bending_stiffness"] = json!(0), &["bending_stiffness", "above 0"]),
         (|all| all["model"]["elements"][0]["nodes"] = json!(["a", "c", "b"]), &["nodes", "turns back"]),
     ];
     for (change, parts) in cases {
         let told = refused(change);
         assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+    }
+}
+
+/// A clamped beam that is released at its clamp turns about it: the message names the beam and the place of its hinge.
+#[test]
+fn a_hinge_that_makes_a_mechanism_is_named() {
+    let value = json!({"model": {
+        "dimension": 2, "nodes": {"clamp": [0, 0], "tip": [0.5, 0]}, "supports": {"clamp": ["x", "y", "rz"]},
+        "elements": [
+            {"kind": "beam", "nodes": ["clamp", "tip"], "axial_stiffness": 1.0, "bending_stiffness": 1.0,
+             "releases": {"clamp": ["rz"]}},
+            {"kind": "rotational_spring", "nodes": ["clamp"], "stiffness": 1.0},
+        ],
+        "stages": [{"name": "push", "forces": {"tip": [0, 1]}}],
+    }});
+    let told = Scene::new(&request(&value.to_string())).err().expect("a mechanism").to_string();
+    for part in ["model.elements[0]", "released at \"clamp\" can turn", "leave the release out"] {
+        assert!(told.contains(part), "{told}");
     }
 }

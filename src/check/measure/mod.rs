@@ -16,7 +16,8 @@
 //! global_equilibrium  |Σ F|/F, |Σ (x - c) × F|/(F × extent) over supports, loads, contacts and springs
 //! arc_length      |a - step| / max(1, a),  a = ‖(Δu/ℓ, Δs/σ)‖;   |arc_length - A| / max(1, A),
 //!                 A = arc_length before + step
-//! energy          |W - E - D| / largest energy so far (at least 1e-10 F ℓ)
+//! energy          |W - E - D| / largest energy so far (at least 1e-10 F ℓ, and 1e6 times the rounding of forces
+//!                 times the way: six digits of less do not exist)
 //! strain_energy   |E - E(u) + E(0)| / the same
 //! slip_direction  3D: angle between the slip and the sum of the unit directions -r_t/|r_t| at its two ends
 //! ```
@@ -86,6 +87,8 @@ use vector::{MeasuredVector, largest, padded};
 const NO_FORCE: f64 = 1e-20;
 /// Energies below this fraction of the largest force times the displacement scale count as rounding errors.
 const NO_ENERGY: f64 = 1e-10;
+/// Energies are compared with at least this multiple of the rounding of forces times the length of the path.
+const ENERGY_DIGITS: f64 = 1e6;
 
 /// Checks the increments of a path, in order.
 #[derive(Debug, Clone)]
@@ -100,6 +103,8 @@ pub struct Judge {
     reached: Vec<f64>,
     held: PostedLoading,
     before: PreviousPoint,
+    /// Stiffness of the stiffest element.
+    stiffest: f64,
     largest_force: f64,
     largest_energy: f64,
     initial_strain: f64,
@@ -185,6 +190,7 @@ impl Judge {
             reached: Vec::new(),
             held: none.clone(),
             before: PreviousPoint::at_rest(&posted),
+            stiffest,
             largest_force: 0.0,
             largest_energy: 0.0,
             initial_strain,
@@ -448,7 +454,10 @@ impl Judge {
         if most.is_finite() {
             self.largest_energy = most;
         }
-        let size = self.largest_energy.max(NO_ENERGY * self.largest_force.max(self.no_force) * self.length);
+        let of_force = NO_ENERGY * self.largest_force.max(self.no_force) * self.length;
+        let reach = self.work.displacements.iter().map(largest).fold(0.0, f64::max);
+        let rounding = f64::EPSILON * self.stiffest * reach * increment.arc_length * self.length;
+        let size = self.largest_energy.max(of_force).max(ENERGY_DIGITS * rounding);
         let imbalance = energy.external_work - energy.strain - energy.dissipated;
         errors.energy = worse(0.0, imbalance.abs() / size);
         errors.strain_energy = worse(0.0, (energy.strain - (strain - self.initial_strain)).abs() / size);

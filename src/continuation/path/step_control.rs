@@ -13,7 +13,7 @@ use crate::continuation::path::step_attempt::{self, Sought, Tried, Tries};
 use crate::continuation::path::tolerances::{
     CREEPING_LENGTH, CREEPING_SHARE, LARGEST_CURVATURE_GROWTH, LARGEST_STEP_GROWTH, LENGTH_PAST_BEND, REJECTION_FACTOR,
     SHORT_STEP, SMALLEST_COMPLETED_SHARE, SMALLEST_STRETCH, TARGET_IMBALANCE, TARGET_ITERATIONS, TARGET_TURN,
-    WORK_ROUND_OFF,
+    UNSTRESSED_MULTIPLE, WORK_ROUND_OFF,
 };
 use crate::continuation::path::{mpec_increments, mpec_verification};
 use crate::continuation::path_state::path_context::PathTrace;
@@ -349,6 +349,9 @@ fn next_step_factor(trace: &PathTrace<'_>, accepted: &AcceptedStep, tried: f64, 
     let is_too_large = imbalance > TARGET_IMBALANCE * size;
     let is_none = is_too_large && reached.step <= SHORT_STEP && imbalance <= by_stiffness();
     let imbalance = if is_none { TARGET_IMBALANCE * size } else { imbalance };
+    let forces = trace.at.totals.force_scale.max(reached.corrected.force_scale);
+    let none = UNSTRESSED_MULTIPLE * trace.structure.largest_rounding(&reached.corrected.state.displacement);
+    let imbalance = if forces <= none { 0.0 } else { imbalance };
     // The balance of one increment has an error of fifth order in its arc length.
     let by_energy = (TARGET_IMBALANCE / (imbalance / size).max(1e-3 * TARGET_IMBALANCE)).powf(0.2);
     // A step cut short by an event says little about a longer one in the mode that follows. After a step that was too

@@ -80,6 +80,10 @@ pub(crate) const WORK_ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 /// first step 0.02, so that ordinary steps are still controlled by the energy balance.
 pub(crate) const SHORT_STEP: f64 = 1e-3;
 
+/// Forces up to this multiple of the rounding of the structure's forces are none: the energies of a motion without
+/// stress say nothing about the step. The rounding of a force is one unit, that of a sum over elements a few.
+pub(crate) const UNSTRESSED_MULTIPLE: f64 = 100.0;
+
 /// Stretch of a bar at which round-off in displacements of the order of the bar's length rotates the bar by as much as
 /// forces may be in error: unit round-off 2e-16 over the stretch 1e-6 is 2e-10, about the violation 1e-10 that an
 /// accepted point may have. A shorter bar has no reliable direction.

@@ -92,7 +92,7 @@ pub(crate) fn increment(scene: &Scene, totals: &Totals, row: &RowSource<'_>) -> 
             elapsed_s: row.elapsed_s,
             residual: row.residual,
             complementarity,
-            energy_error: totals.energy_error(),
+            energy_error: totals.energy_error(scene.structure.largest_rounding(&row.state.displacement)),
             error_estimate: row.error_estimate,
             factorisations: totals.work.factorisations,
             bifurcation_factorisations: totals.work.bifurcation_factorisations,

@@ -19,3 +19,7 @@ pub(crate) const DISTANCE_ROUND_OFF: f64 = 1e-9;
 /// differences of products of forces and displacements, with an error of some units of round-off 2e-16 of that product
 /// for each increment; the value covers 5e3 such errors.
 pub(crate) const ENERGY_ROUND_OFF: f64 = 1e-12;
+
+/// Energies are compared with at least this multiple of the rounding of forces times the arc length: where no more is
+/// stored, given or dissipated, six digits of the energies, to which their balance is held, do not exist.
+pub(crate) const ENERGY_DIGITS: f64 = 1e6;

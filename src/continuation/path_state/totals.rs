@@ -1,6 +1,6 @@
 //! Totals that a path accumulates from increment to increment, with either method.
 
-use crate::continuation::path_state::tolerances::ENERGY_ROUND_OFF;
+use crate::continuation::path_state::tolerances::{ENERGY_DIGITS, ENERGY_ROUND_OFF};
 use crate::resources::budget::Breach;
 use crate::result::increment::{Energy, Increment, Tangential};
 use crate::result::report::Report;
@@ -72,10 +72,11 @@ impl Totals {
         }
     }
 
-    /// `|external work - strain - dissipated|` over the largest energy so far.
-    pub fn energy_error(&self) -> f64 {
+    /// `|external work - strain - dissipated|` over the largest energy so far; `rounding` is that of the forces.
+    pub fn energy_error(&self, rounding: f64) -> f64 {
         let imbalance = (self.energy.external_work - self.energy.strain - self.energy.dissipated).abs();
-        let size = self.largest_energy.max(ENERGY_ROUND_OFF * self.force_scale);
+        let of_rounding = ENERGY_DIGITS * rounding * self.arc_length;
+        let size = self.largest_energy.max(ENERGY_ROUND_OFF * self.force_scale).max(of_rounding);
         if size > 0.0 { imbalance / size } else { 0.0 }
     }
 

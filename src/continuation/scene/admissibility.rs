@@ -8,6 +8,7 @@ use crate::continuation::scene::stage_load::StageLoad;
 use crate::continuation::scene::tolerances::{ACCEPTED_IMBALANCE, CLOSED_GAP};
 use crate::mechanics::contact::vector::dot;
 use crate::mechanics::problem::contact_jacobian;
+use crate::mechanics::structure::Structure;
 use crate::model::request::Model;
 use crate::model::{InputError, InputErrors};
 use itertools::Itertools;
@@ -115,7 +116,7 @@ fn hold_closed_contacts(scene: &Scene, stiffness: f64, matrix: &mut impl Sink) {
 }
 
 /// Refuses a structure that has a motion without resistance even with all closed contacts constrained.
-pub(super) fn refuse_mechanism(scene: &Scene) -> Result<(), InputErrors> {
+pub(super) fn refuse_mechanism(scene: &Scene, model: &Model) -> Result<(), InputErrors> {
     let structure = &scene.structure;
     let still = vec![0.0; structure.freedoms()];
     let Some(motions) = unresisted_motions(scene, &still) else { return Ok(()) };
@@ -125,21 +126,41 @@ pub(super) fn refuse_mechanism(scene: &Scene) -> Result<(), InputErrors> {
             rate[structure.freedom_of[unknown]] = *value;
         }
         if structure.resistance(&still, &rate) < 1e-10 {
-            let unknown = motion.iamax();
-            let freedom = structure.freedom_of[unknown];
-            let (node, which) = structure.numbering.node_of(freedom);
-            let name = scene.node_name(node);
-            let motion = structure.numbering.motion_of(which);
-            return Err(InputErrors(vec![InputError::new(
-                pointer_to_node(name),
-                format!(
-                    "the structure is a mechanism: \"{name}\" can {motion} with no element, support or \
-                     closed contact resisting; support it, or connect it by bars or springs that resist the motion"
-                ),
-            )]));
+            return Err(InputErrors(vec![mechanism(scene, model, structure.freedom_of[motion.iamax()])]));
         }
     }
     Ok(())
+}
+
+/// The mistake of a structure that moves without resistance, most along this degree of freedom.
+fn mechanism(scene: &Scene, model: &Model, freedom: usize) -> InputError {
+    let structure = &scene.structure;
+    let (node, which) = structure.numbering.node_of(freedom);
+    let name = scene.node_name(node);
+    let resisting = "with no element, support or closed contact resisting";
+    if let Some(element) = released_at(structure, model, node, which) {
+        let text = format!(
+            "the structure is a mechanism: the end of this beam that is released at \"{name}\" can turn {resisting}; \
+             leave the release out, or hold the beam elsewhere"
+        );
+        return InputError::new(format!("/model/elements/{element}"), text);
+    }
+    let motion = structure.numbering.motion_of(which);
+    let text = format!(
+        "the structure is a mechanism: \"{name}\" can {motion} {resisting}; support it, or connect it by elements \
+         that resist the motion"
+    );
+    InputError::new(pointer_to_node(name), text)
+}
+
+/// The element whose released end has the degree of freedom `which` of a node, by its place in the input.
+fn released_at(structure: &Structure, model: &Model, node: usize, which: usize) -> Option<usize> {
+    let rotation = which.checked_sub(structure.dimension)?;
+    let (name, _) = model.nodes.get_index(node)?;
+    structure.elements().zip(&model.elements).position(|(at, element)| {
+        let place = element.nodes().iter().position(|own| own == name).filter(|_| !element.turns_with(name));
+        place.is_some_and(|place| at.element.first_rotation_at(place) == rotation && at.element.rotations() > 0)
+    })
 }
 
 fn pointer_to_node(name: &str) -> String {

@@ -198,7 +198,7 @@ impl Scene {
             plan,
         };
         scene.plan.left_out.extend(crate::continuation::scene::omitted_features::left_out(&scene));
-        admissibility::refuse_mechanism(&scene)?;
+        admissibility::refuse_mechanism(&scene, model)?;
         admissibility::refuse_imbalance(&scene)?;
         admissibility::refuse_dragged_supports(&scene, model)?;
         Ok(scene)

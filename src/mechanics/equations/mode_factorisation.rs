@@ -11,7 +11,7 @@ use crate::mechanics::structure::elements::Stretching;
 use std::sync::Arc;
 
 /// Largest number of unknowns for which digits are saved in this way.
-const MOST_APART: usize = 200;
+const MOST_APART: usize = 60;
 
 /// The constraints of the closed contacts at each node, in the order of the nodes. A contact that several nodes
 /// move belongs to no single node: its rows border the matrix.

@@ -61,6 +61,8 @@ pub struct Structure {
     pub turning: TurningNodes,
     /// Whether an element has forces that are variables of the iteration.
     independent_forces: bool,
+    /// The largest force that a displacement of one may cause.
+    largest_stiffness: f64,
 }
 
 impl Structure {
@@ -108,9 +110,13 @@ impl Structure {
             layout: None,
             turning: TurningNodes::default(),
             independent_forces: elements.iter().any(|element| element.independent_forces() > 0),
+            largest_stiffness: 0.0,
         };
         structure.turning = TurningNodes::of(&structure.numbering, &structure.unknown_of);
         structure.set_elements(elements);
+        let (still, mut sizes) = (vec![0.0; structure.freedoms()], vec![0.0; structure.freedoms()]);
+        structure.force_sizes(&still, 1.0, &mut sizes);
+        structure.largest_stiffness = sizes.into_iter().fold(0.0, f64::max);
         match other.filter(|other| other.layout.is_some() && other.has_places_of(&structure)) {
             Some(other) => structure.layout.clone_from(&other.layout),
             None => structure.set_sparse(structure.unknowns() > MOST_DENSE),
@@ -301,6 +307,13 @@ impl Structure {
         rounding.iter_mut().for_each(|size| *size *= f64::EPSILON);
         rounding
     }
+
+    /// The largest of a bound on the rounding in `f_int(u)`, by the largest displacement and the stiffest element.
+    pub fn largest_rounding(&self, displacement: &[f64]) -> f64 {
+        let reach = displacement.iter().fold(0.0_f64, |reach, value| reach.max(value.abs()));
+        f64::EPSILON * self.largest_stiffness * reach
+    }
+
     /// Writes the size of the terms that make up `f_int(u)`, one per degree of freedom: `|K| |u|` and the forces that
     /// the elements carry, with displacements of at least `least`. A residual is small or not relative to this size,
     /// whatever the forces elsewhere (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405, doi:10.1007/BF01386090).

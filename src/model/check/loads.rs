@@ -68,8 +68,9 @@ pub(super) fn loads(scope: &Scope, around: &Surroundings, stage: &Stage, at: &Do
             stage.moments.is_empty() && stage.displacements.is_empty() && stage.obstacle_motion.is_empty();
         let at = if only_forces && !stage.forces.is_empty() { &forces_at } else { at };
         mistakes.add(at, || {
-            "the stage has no load; a force that is not zero on a free component, a displacement of a support that an \
-             element joins to one, or a motion of an obstacle against a contact is expected"
+            "the stage has no load; a force that is not zero on a free component, a moment on a rotation that is free, a \
+             displacement of a support that an element joins to a free component, or a motion of an obstacle against a \
+             contact is expected"
         });
     }
 }
@@ -109,7 +110,7 @@ fn moments(scope: &Scope, stage: &Stage, at: &DocumentPlace, mistakes: &mut Mist
         let at = at.member(name);
         if scope.model.dimension != 2 {
             mistakes.add(&at, || {
-                "moments in space are not taken; `displacements` of a supported rotation, or forces, would do"
+                "moments in space are not taken; `displacements` of a supported rotation, or a pair of forces, would do"
                     .to_owned()
             });
             continue;
@@ -137,6 +138,16 @@ fn displacements(
         // The rotations may follow where the node has any.
         let with_rotations = dimension + scope.model.rotations();
         let turns = displacement.len() == with_rotations && node.is_some_and(|node| scope.has_rotation(node));
+        let may_turn = with_rotations > dimension && node.is_some_and(|node| scope.has_rotation(node));
+        if may_turn && !turns && displacement.len() != dimension {
+            mistakes.add(&at, || {
+                format!(
+                    "found {} numbers; {dimension} are expected, or {with_rotations} with the rotations of the node",
+                    displacement.len()
+                )
+            });
+            continue;
+        }
         if !numbers::vector(displacement, if turns { with_rotations } else { dimension }, &at, mistakes) {
             continue;
         }

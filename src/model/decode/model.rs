@@ -105,6 +105,10 @@ const STRAIN: Choices<Strain> = Choices {
     later: &[],
 };
 
+/// What the end of a beam can be released in.
+const RELEASE: Choices<Component> =
+    Choices { what: "a release of a beam in the plane", known: &[("rz", Component::Rz)], later: &[] };
+
 const COMPONENT: Choices<Component> = Choices {
     what: "a component",
     known: &[
@@ -161,6 +165,10 @@ fn components(input: &Input, mistakes: &mut Mistakes) -> Option<Vec<Component>> 
     input.list(mistakes, component)
 }
 
+fn releases(input: &Input, mistakes: &mut Mistakes) -> Option<Vec<Component>> {
+    input.list(mistakes, |input, mistakes| input.choice(&RELEASE, mistakes))
+}
+
 fn strings(input: &Input, mistakes: &mut Mistakes) -> Option<Vec<String>> {
     input.list(mistakes, text)
 }
@@ -214,8 +222,8 @@ fn beam(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
     let torsional_stiffness = object.optional("torsional_stiffness", mistakes, number);
     let orientation = object.optional("orientation", mistakes, numbers);
     let shear_stiffness = object.optional("shear_stiffness", mistakes, number);
-    let releases = object
-        .with_default("releases", Default::default(), mistakes, |input, mistakes| input.map(mistakes, components));
+    let releases =
+        object.with_default("releases", Default::default(), mistakes, |input, mistakes| input.map(mistakes, releases));
     let name = object.optional("name", mistakes, text);
     Some(Element::Beam {
         nodes: nodes?,

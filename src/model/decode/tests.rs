@@ -52,7 +52,7 @@ fn element() -> impl Strategy<Value = Element> {
     );
     let spring = (vec(name(), 0..3), vec(numbers(), 0..4), of(name()))
         .prop_map(|(nodes, stiffness, name)| Element::Spring { nodes, stiffness, name });
-    let releases = map(vec(component(), 0..3));
+    let releases = map(vec(Just(Component::Rz), 0..3));
     let bending = prop_oneof![
         number().prop_map(BendingStiffness::Plane),
         (number(), number()).prop_map(|(first, second)| BendingStiffness::Space([first, second])),

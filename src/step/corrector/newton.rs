@@ -11,9 +11,9 @@ use crate::mechanics::problem::tolerances::{NEGLIGIBLE_FORCE, USUAL_DISPLACEMENT
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::tangent;
 use crate::step::corrector::tolerances::{
-    ACCEPTED_RESIDUAL, ATTAINABLE_RESIDUAL, FIRST_CORRECTION_RATIO, LARGEST_RELATIVE_CORRECTION, NEGLIGIBLE_CORRECTION,
-    POSITION_ROUND_OFF, REUSABLE_PIVOT_RATIO, REUSE_CONTRACTION, RISING_CORRECTION_RATIO, ROUND_OFF_CORRECTION_RATIO,
-    ROUND_OFF_MULTIPLE, SMALL_ERROR, WEAK_ROW_FORCE,
+    ACCEPTED_RESIDUAL, ATTAINABLE_RESIDUAL, FALLEN_FORCES, FIRST_CORRECTION_RATIO, LARGEST_RELATIVE_CORRECTION,
+    NEGLIGIBLE_CORRECTION, POSITION_ROUND_OFF, REUSABLE_PIVOT_RATIO, REUSE_CONTRACTION, RISING_CORRECTION_RATIO,
+    ROUND_OFF_CORRECTION_RATIO, ROUND_OFF_MULTIPLE, SMALL_ERROR, WEAK_ROW_FORCE,
 };
 use nalgebra::DVector;
 
@@ -225,8 +225,20 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
         Ok(IterateError { residual, forces, scale, geometric, error })
     }
 
+    /// Relates the residual of the best iterate to the present forces where these are far smaller.
+    fn rank_by_present_forces(&mut self, at: &IterateError) {
+        let Some(best) = &mut self.best else { return };
+        let scale = best.force_scale.max(self.force_scale).max(NEGLIGIBLE_FORCE);
+        if at.scale < FALLEN_FORCES * scale {
+            best.residual *= scale / at.scale;
+            best.error = best.error.max(best.residual);
+            best.force_scale = at.forces;
+        }
+    }
+
     /// Keeps the iterate if it is the best so far.
     fn keep_best(&mut self, at: &IterateError) -> ErrorProgress {
+        self.rank_by_present_forces(at);
         let error = at.error;
         let best_before = self.best.as_ref().map(|best| best.error);
         let improved = best_before.is_none_or(|least| error < 0.5 * least);

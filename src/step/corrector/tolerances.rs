@@ -61,6 +61,11 @@ pub(crate) const ROUND_OFF_MULTIPLE: f64 = 8.0;
 /// 1e-13.
 pub(crate) const POSITION_ROUND_OFF: f64 = 1e-13;
 
+/// Ratio of the present force scale to that of the best iterate below which the best iterate's residual is related to
+/// the present forces: stiff elements that an early iterate strains make its forces, and so the residual that passes for
+/// small, far larger than those of the solution. Forces that fall less cost less than one digit.
+pub(crate) const FALLEN_FORCES: f64 = 0.1;
+
 /// Rows with forces below this fraction of the force scale are judged relative to their own forces. A residual at the
 /// attainable 1e-15 of the force scale is 1e-12 or less of the forces of any other row, below the accepted residual
 /// 1e-11, so that only weaker rows need a judgement of their own.

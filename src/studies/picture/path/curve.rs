@@ -53,7 +53,8 @@ pub enum EventKind {
 impl Curve {
     pub fn new(model: &Model, against: &Against, increments: &[Increment]) -> Self {
         let length = model.units.as_ref().and_then(|units| units.length.as_deref());
-        let unit = length.map_or_else(String::new, |length| format!(" [{length}]"));
+        let unit = if against.is_rotation() { Some("rad") } else { length };
+        let unit = unit.map_or_else(String::new, |unit| format!(" [{unit}]"));
         let mut curve = Self {
             title: model.name.clone(),
             against: format!("{against}{unit}"),

@@ -14,14 +14,18 @@ use crate::model::request::Component;
 use crate::result::increment::Increment;
 use crate::studies::picture::PlotError;
 use curve::Curve;
+use std::collections::BTreeSet;
 
-const COMPONENTS: [Component; 3] = [Component::X, Component::Y, Component::Z];
+const COMPONENTS: [Component; 6] =
+    [Component::X, Component::Y, Component::Z, Component::Rx, Component::Ry, Component::Rz];
 
-/// A displacement component of a node, `tip.x` on the command line.
+/// A displacement component or a rotation of a node, `tip.x` on the command line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Against {
     pub node: String,
     component: Component,
+    /// The component's place among the node's.
+    place: usize,
 }
 
 /// There is no such displacement component.
@@ -37,7 +41,9 @@ impl Against {
     pub fn read(text: &str, model: &Model) -> Result<Self, UnknownDisplacement> {
         let found = text.rsplit_once('.').and_then(|(node, letter)| {
             let component = axes(model).find(|component| name(*component) == letter)?;
-            model.nodes.contains_key(node).then(|| Self { node: node.to_owned(), component })
+            let there =
+                model.nodes.contains_key(node) && (!component.is_rotation() || turning_nodes(model).contains(node));
+            there.then(|| Self { node: node.to_owned(), component, place: component.place(model.dimension) })
         });
         found.ok_or_else(|| {
             let known: Vec<String> = all(model).map(|displacement| displacement.to_string()).collect();
@@ -46,8 +52,12 @@ impl Against {
         })
     }
 
+    fn is_rotation(&self) -> bool {
+        self.component.is_rotation()
+    }
+
     fn of(&self, increment: &Increment) -> Option<f64> {
-        increment.displacements.get(self.node.as_str())?.get(self.component.place(2)).copied()
+        increment.displacements.get(self.node.as_str())?.get(self.place).copied()
     }
 }
 
@@ -79,7 +89,8 @@ fn farthest(model: &Model, increments: &[Increment]) -> Option<Against> {
         !held.is_some_and(|held| held.contains(&displacement.component))
     };
     let mut best: Option<(Against, f64)> = None;
-    for displacement in all(model).filter(is_free) {
+    // Radians and lengths are not compared: a rotation is drawn where one asks for it.
+    for displacement in all(model).filter(|displacement| !displacement.component.is_rotation()).filter(is_free) {
         let reach = increments.iter().filter_map(|increment| displacement.of(increment)).fold(0.0, reach);
         if best.as_ref().is_none_or(|(_, farthest)| reach > farthest * (1.0 + ALIKE)) {
             best = Some((displacement, reach));
@@ -93,11 +104,23 @@ fn reach(farthest: f64, displacement: f64) -> f64 {
 }
 
 fn all(model: &Model) -> impl Iterator<Item = Against> {
-    model.nodes.keys().flat_map(|node| axes(model).map(|component| Against { node: node.clone(), component }))
+    let turning = turning_nodes(model);
+    model.nodes.keys().flat_map(move |node| {
+        let turns = turning.contains(node.as_str());
+        let own = axes(model).filter(move |component| !component.is_rotation() || turns);
+        own.map(|component| Against { node: node.clone(), component, place: component.place(model.dimension) })
+    })
 }
 
 fn axes(model: &Model) -> impl Iterator<Item = Component> {
-    COMPONENTS.into_iter().take(model.dimension)
+    let dimension = model.dimension;
+    COMPONENTS.into_iter().filter(move |component| component.is_in(dimension))
+}
+
+/// The nodes of which increments have a rotation.
+fn turning_nodes(model: &Model) -> BTreeSet<&str> {
+    let nodes = model.elements.iter().flat_map(|element| element.nodes().iter().map(move |node| (element, node)));
+    nodes.filter(|(element, node)| element.turns_with(node)).map(|(_, node)| node.as_str()).collect()
 }
 
 fn name(component: Component) -> &'static str {

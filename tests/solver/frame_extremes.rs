@@ -1,0 +1,94 @@
+//! Frames at the ends of what is drawn: stiffnesses far apart, units far from one, a single element.
+
+use crate::common::paths::{trace, typed};
+use crate::common::variants::in_units;
+use arcslip::model::JobRequest;
+use arcslip::result::increment::Increment;
+use arcslip::result::stop_reason::StopReason;
+use serde_json::{Value, json};
+use std::f64::consts::TAU;
+
+/// A cantilever of one element of `nodes` nodes along x, of length 1.
+fn cantilever(nodes: usize, axial: f64, bending: f64, stage: &Value) -> JobRequest {
+    let name = |k: usize| format!("n{k}");
+    let places: serde_json::Map<String, Value> =
+        (0..nodes).map(|k| (name(k), json!([k as f64 / (nodes - 1) as f64, 0.0]))).collect();
+    let names: Vec<String> = (0..nodes).map(name).collect();
+    typed(json!({
+        "model": {
+            "dimension": 2, "nodes": places, "supports": {"n0": ["x", "y", "rz"]},
+            "elements": [
+                {"kind": "beam", "nodes": names, "axial_stiffness": axial, "bending_stiffness": bending}
+            ],
+            "stages": [stage],
+        },
+        "analysis": {"max_increments": 2000},
+    }))
+}
+
+fn last(increments: &[Increment]) -> &Increment {
+    increments.last().expect("an end")
+}
+
+/// One element bends into a circle under an end moment, and stretches by `P L/EA` under an end force, whatever the ratio of
+/// its stiffnesses.
+#[test]
+fn one_element_with_stiffnesses_far_apart() {
+    for (axial, bending) in [(1e12, 1.0), (1.0, 1e-12), (1e6, 1e-6), (1e-6, 1e6), (1.0, 1e12), (1e-12, 1.0)] {
+        for nodes in [2, 3] {
+            let what = format!("EA = {axial:e}, EI = {bending:e}, {nodes} nodes");
+            let tip = format!("n{}", nodes - 1);
+            let roll = json!({"name": "roll", "moments": {&tip: TAU * bending}, "until": {"load_above": 1}});
+            let (increments, report) = trace(&cantilever(nodes, axial, bending, &roll));
+            assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{what}: {report:?}");
+            let [x, y, turn] = last(&increments).displacements[tip.as_str()][..] else { panic!("three components") };
+            println!("{what}: {} increments, {x:.12} {y:.1e} {turn:.12}", increments.len());
+            assert!((x + 1.0).abs() < 1e-9 && y.abs() < 1e-9 && (turn - TAU).abs() < 1e-9, "{what}: {x} {y} {turn}");
+            let force = 0.3 * axial.min(bending);
+            let pull = json!({"name": "pull", "forces": {&tip: [force, 0]}, "until": {"load_above": 1}});
+            let (increments, report) = trace(&cantilever(nodes, axial, bending, &pull));
+            assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{what}: {report:?}");
+            let (moved, exact) = (last(&increments).displacements[tip.as_str()][0], force / axial);
+            println!("  {} increments, {moved:e}, exact {exact:e}", increments.len());
+            assert!((moved / exact - 1.0).abs() < 1e-8, "{what}: pulled by {moved:e}, not {exact:e}");
+        }
+    }
+}
+
+/// Half an arch, its crown pressed down and its foot on a rough floor.
+fn arch() -> JobRequest {
+    let count = 12;
+    let name = |k: usize| format!("n{k}");
+    let place = |k: usize| {
+        let angle = 0.25 * TAU * k as f64 / f64::from(count);
+        json!([angle.sin(), angle.cos()])
+    };
+    let nodes: serde_json::Map<String, Value> = (0..=count as usize).map(|k| (name(k), place(k))).collect();
+    let beam = |k: usize| json!({"kind": "beam", "nodes": [name(k), name(k + 1)], "axial_stiffness": 1e5, "bending_stiffness": 1.0});
+    typed(json!({"model": {
+        "dimension": 2, "nodes": nodes, "supports": {"n0": ["x", "rz"]},
+        "elements": (0..count as usize).map(beam).collect::<Vec<_>>(),
+        "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}},
+        "contacts": [{"node": "n12", "obstacle": "floor", "friction": 0.8}],
+        "stages": [{"name": "press", "forces": {"n0": [0, -1]}, "until": {"limit_points": 2}}],
+    }}))
+}
+
+#[test]
+fn units_far_from_one_change_nothing_but_round_off() {
+    let (plain, _) = trace(&arch());
+    for (length, force) in [(1e12, 1.0), (1e-12, 1.0), (1.0, 1e12), (1.0, 1e-12), (1e12, 1e-12), (1e-12, 1e12)] {
+        let (other, _) = trace(&in_units(arch(), length, force));
+        let what = format!("units of {length:e}, {force:e}");
+        assert_eq!(other.len(), plain.len(), "{what}");
+        for (a, b) in plain.iter().zip(&other) {
+            assert_eq!((a.point.kind, a.contacts[0].status), (b.point.kind, b.contacts[0].status), "{what}");
+            for (name, moved) in a.displacements.iter() {
+                let moved_b = &b.displacements[name];
+                let scaled = [moved_b[0] / length, moved_b[1] / length, moved_b[2]];
+                let apart = moved.iter().zip(scaled).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                assert!(apart < 1e-9, "{what}, increment {}: {name} by {apart:e}", a.index);
+            }
+        }
+    }
+}
