@@ -1,0 +1,3 @@
+//! Meshes from files.
+pub mod data;
+pub mod gmsh;
