@@ -242,7 +242,8 @@ def main():
     write_cubes()
     summaries = {path.name: summary(path) for path in generated()}
     gmsh.finalize()
-    (HERE / "summaries.json").write_text(json.dumps(summaries, indent=1) + "\n")
+    lines = [f" {json.dumps(name)}: {json.dumps(read)}" for name, read in summaries.items()]
+    (HERE / "summaries.json").write_text("{\n" + ",\n".join(lines) + "\n}\n")
 
 
 if __name__ == "__main__":

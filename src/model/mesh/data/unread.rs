@@ -6,6 +6,9 @@ use indexmap::IndexMap;
 /// Entries of the list at most; what goes beyond them is counted.
 const MOST_ENTRIES: usize = 100;
 
+/// Letters of a description at most.
+const MOST_LETTERS: usize = 200;
+
 /// A part of a file that is not read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct UnreadEntry {
@@ -25,7 +28,10 @@ pub struct Unread {
 impl Unread {
     /// Adds a part of the file. Parts of the same description are counted.
     pub fn add(&mut self, place: MeshPlace, description: impl Into<String>) {
-        let description = description.into();
+        let mut description = description.into();
+        if let Some((end, _)) = description.char_indices().nth(MOST_LETTERS) {
+            description.truncate(end);
+        }
         if let Some(entry) = self.entries.get_mut(&description) {
             entry.count += 1;
         } else if self.entries.len() < MOST_ENTRIES {

@@ -67,6 +67,9 @@ impl Found {
 
     /// Appends an element to the runs.
     pub fn extend_run(&mut self, dimension: usize, tag: i64, count: usize) {
+        if count == 0 {
+            return;
+        }
         match self.runs.last_mut() {
             Some(run) if (run.dimension, run.tag) == (dimension, tag) => run.count += count,
             _ => {

@@ -12,6 +12,9 @@ use std::collections::HashMap;
 /// Names of geometrical entities by dimension, for groups without a name.
 const ENTITIES: [&str; 4] = ["point", "curve", "surface", "volume"];
 
+/// What the note that a run is in a group counts as, in members.
+const MEMBERS_OF_RUN: usize = 16;
+
 /// The mesh of what was found. In files of version 2 an element that is in several groups is there several times.
 ///
 /// # Errors
@@ -29,7 +32,7 @@ pub fn mesh(mut found: Found, may_repeat: bool, bytes: usize) -> Result<Mesh, Me
     let mut draft = MeshDraft::default();
     let mut budget = MemberBudget::new(bytes);
     let mut stamps = vec![0_u32; found.node_labels.len()];
-    for (stamp, (name, runs)) in (1..).zip(runs_by_group(&found)) {
+    for (stamp, (name, runs)) in (1..).zip(runs_by_group(&found, &mut budget)?) {
         let members = members(&runs, &places, &mut budget)?;
         let nodes = nodes_of(&members, &found.elements, &mut stamps, stamp);
         budget.take(nodes.len(), MeshPlace::File)?;
@@ -70,12 +73,13 @@ fn merge_repeated(all: MeshElements) -> (MeshElements, Vec<u32>, usize) {
 }
 
 /// The runs of elements of each group, by its name.
-fn runs_by_group(found: &Found) -> IndexMap<String, Vec<ElementRun>> {
+fn runs_by_group(found: &Found, budget: &mut MemberBudget) -> Result<IndexMap<String, Vec<ElementRun>>, MeshError> {
     let mut groups: IndexMap<(usize, i64), Vec<ElementRun>> = IndexMap::new();
     for run in &found.runs {
         match &found.entities {
             Some(entities) => {
                 for tag in entities.get(&(run.dimension, run.tag)).into_iter().flatten() {
+                    budget.take(MEMBERS_OF_RUN, MeshPlace::File)?;
                     // A negative tag stands for the entity in the other sense.
                     groups.entry((run.dimension, tag.saturating_abs())).or_default().push(*run);
                 }
@@ -92,7 +96,7 @@ fn runs_by_group(found: &Found) -> IndexMap<String, Vec<ElementRun>> {
         let name = found.names.get(&(dimension, tag)).cloned().unwrap_or_else(|| format!("{entity}_group_{tag}"));
         by_name.entry(name).or_default().extend(runs);
     }
-    by_name
+    Ok(by_name)
 }
 
 /// The elements of runs, ascending.

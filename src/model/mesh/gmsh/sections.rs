@@ -78,7 +78,7 @@ fn section_name<'a>(cursor: &mut Cursor<'a>) -> Result<Option<&'a [u8]>, MeshErr
         return Ok(None);
     }
     match word.strip_prefix(b"$") {
-        Some(name) if !name.is_empty() => Ok(Some(name)),
+        Some(name) if !name.is_empty() && name.len() <= MOST_NAME_BYTES => Ok(Some(name)),
         _ => Err(MeshError::expected(cursor.place(), "a section such as `$Nodes`", quoted(word))),
     }
 }
