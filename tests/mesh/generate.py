@@ -114,8 +114,10 @@ def special_models():
 
     start("periodic")
     plane_model(1, True)
-    shift = [1, 0, 0, 2.25, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
-    gmsh.model.mesh.setPeriodic(0, [4], [6], shift)
+    shift = [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+    gmsh.model.mesh.clear()
+    gmsh.model.mesh.setPeriodic(1, [2], [1], shift)
+    gmsh.model.mesh.generate(2)
     write("periodic", versions=(4.1,))
 
     start("sparse")

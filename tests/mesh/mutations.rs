@@ -60,8 +60,8 @@ fn files_that_are_cut_are_refused() {
         let whole = bytes.trim_ascii_end().len();
         for end in (0..whole).step_by(1 + whole / 700) {
             let is_read = survives(&name, &bytes[..end]);
-            // A deck has no end of its own.
-            assert!(!is_read || name.ends_with(".inp"), "{name} is read up to byte {end}");
+            // A deck has no end of its own, and what follows the elements may be missing.
+            assert!(!is_read || name.ends_with(".inp") || name.starts_with("periodic"), "{name} is read up to byte {end}");
         }
     }
 }

@@ -152,5 +152,5 @@ fn an_element_in_two_groups_is_one_element() {
         assert_eq!((mesh.element_sets["left"].len(), mesh.element_sets["right"].len()), (4, 4));
         assert_eq!(mesh.surfaces["lower left"].len(), 4);
     }
-    assert_eq!(two.remarks[0], "12 elements are there again for a further group: they are read as one each");
+    assert_eq!(two.remarks[0], "10 elements are there again for a further group: they are read as one each");
 }
