@@ -97,7 +97,11 @@ fn files_of_version_four() {
             ("1 3 1 3", "2 3 1 3", "expected the dimension of an entity, found `$EndNodes`"),
             ("2 1 0 3\n1", "2 1 0 1000000000000\n1", "1000000000000 nodes are announced"),
             ("2 1 0 3\n1", "4 1 0 3\n1", "expected a dimension of an entity from 0 to 3, found 4"),
-            ("2 1 0 3\n1", "2 1 1 3\n1", "line 17: expected a parametric coordinate, a finite number, found `$EndNodes`"),
+            (
+                "2 1 0 3\n1",
+                "2 1 1 3\n1",
+                "line 17: expected a parametric coordinate, a finite number, found `$EndNodes`",
+            ),
             ("\n1\n2\n3\n", "\n1\n2\n2\n", "node 2 is given twice"),
             ("\n1\n2\n3\n", "\n1\n-2\n3\n", "line 12: expected the tag of a node, found `-2`"),
             ("1 1 7 7", "1 2 7 7", "2 elements are announced, and the blocks have 1"),
@@ -105,7 +109,11 @@ fn files_of_version_four() {
             ("2 1 2 1\n7", "2 1 2 1000000000000\n7", "1000000000000 elements are announced"),
             ("2 1 2 1\n7", "2 5 2 1\n7", "dimension 2, tag 5: `$Entities` does not have the elements' entity"),
             ("2 1 2 1\n7", "2 1 10 1\n7", "quadrilaterals of 9 nodes"),
-            ("7 1 2 3", "7 1 2 9223372036854775808", "element 7 has node 9223372036854775808, which is not in `$Nodes`"),
+            (
+                "7 1 2 3",
+                "7 1 2 9223372036854775808",
+                "element 7 has node 9223372036854775808, which is not in `$Nodes`",
+            ),
             ("7 1 2 3", "7 1 2 x", "expected the tag of a node, found `x`"),
         ],
     );

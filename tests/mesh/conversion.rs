@@ -104,5 +104,8 @@ fn what_has_no_stiffness_is_no_model() {
     let bent = "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,1\n*ELEMENT,TYPE=CPS3\n1,1,2,3\n";
     let mesh = read(bent.as_bytes()).expect("a mesh");
     let error = ConvertedModel::new(&mesh, None).expect_err("not plane").to_string();
-    assert_eq!(error, "the file: plane elements have to lie in one plane of constant z; node 3 has z = 1, another one 0");
+    assert_eq!(
+        error,
+        "the file: plane elements have to lie in one plane of constant z; node 3 has z = 1, another one 0"
+    );
 }

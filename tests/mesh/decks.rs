@@ -165,11 +165,7 @@ fn faces_have_the_numbers_of_abaqus() {
         ("CPE3", 3, &[&[1, 2], &[2, 3], &[1, 3]]),
         ("CAX4", 4, &[&[1, 2], &[2, 3], &[3, 4], &[1, 4]]),
         ("C3D4", 4, &[&[1, 2, 3], &[1, 2, 4], &[2, 3, 4], &[1, 3, 4]]),
-        (
-            "C3D8",
-            8,
-            &[&[1, 2, 3, 4], &[5, 6, 7, 8], &[1, 2, 5, 6], &[2, 3, 6, 7], &[3, 4, 7, 8], &[1, 4, 5, 8]],
-        ),
+        ("C3D8", 8, &[&[1, 2, 3, 4], &[5, 6, 7, 8], &[1, 2, 5, 6], &[2, 3, 6, 7], &[3, 4, 7, 8], &[1, 4, 5, 8]]),
     ];
     let tetrahedron = "1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n";
     let cube = "1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n";
@@ -177,10 +173,8 @@ fn faces_have_the_numbers_of_abaqus() {
         let points = if kind == "C3D4" { tetrahedron } else { cube };
         let list: Vec<String> = (1..=nodes).map(|node| node.to_string()).collect();
         for (number, corners) in (1..).zip(faces) {
-            let text = format!(
-                "*NODE\n{points}*ELEMENT,TYPE={kind}\n1,{}\n*SURFACE,NAME=s\n1,S{number}\n",
-                list.join(",")
-            );
+            let text =
+                format!("*NODE\n{points}*ELEMENT,TYPE={kind}\n1,{}\n*SURFACE,NAME=s\n1,S{number}\n", list.join(","));
             let mut found: Vec<u32> = deck(&text).surfaces["s"].get(0).iter().map(|node| node + 1).collect();
             found.sort_unstable();
             assert_eq!(found, *corners, "{kind} S{number}");

@@ -72,11 +72,8 @@ fn faces_look_out_of_their_elements() {
             let at = points(&mesh, face);
             let out = less(mean(&at), mean(&points(&mesh, owner)));
             let along = less(at[1], at[0]);
-            let normal = if mesh.dimension() == 2 {
-                [along[1], -along[0], 0.0]
-            } else {
-                cross(along, less(at[2], at[0]))
-            };
+            let normal =
+                if mesh.dimension() == 2 { [along[1], -along[0], 0.0] } else { cross(along, less(at[2], at[0])) };
             if owners.count() == 1 {
                 assert!(dot(normal, out) > 0.0, "{name}: {face:?}");
             }

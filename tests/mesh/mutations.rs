@@ -61,7 +61,10 @@ fn files_that_are_cut_are_refused() {
         for end in (0..whole).step_by(1 + whole / 700) {
             let is_read = survives(&name, &bytes[..end]);
             // A deck has no end of its own, and what follows the elements may be missing.
-            assert!(!is_read || name.ends_with(".inp") || name.starts_with("periodic"), "{name} is read up to byte {end}");
+            assert!(
+                !is_read || name.ends_with(".inp") || name.starts_with("periodic"),
+                "{name} is read up to byte {end}"
+            );
         }
     }
 }

@@ -24,12 +24,7 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
     found.element_blocks.iter_mut().for_each(|block| block.nodes = Vec::new());
     let element_index = LabelIndex::new(&elements.labels).map_err(|second| repeated_element(&found, second))?;
     let labels = elements.labels.clone();
-    let nodes = Population {
-        what: "node",
-        labels: &found.node_labels,
-        index: &node_index,
-        left_out: &HashSet::new(),
-    };
+    let nodes = Population { what: "node", labels: &found.node_labels, index: &node_index, left_out: &HashSet::new() };
     let node_sets = ResolvedSets::new(nodes, &found.node_sets, &mut budget)?;
     let population =
         Population { what: "element", labels: &labels, index: &element_index, left_out: &found.other_elements };

@@ -56,7 +56,8 @@ fn read_keyword(
         "SOLID SECTION" => materials::solid_section(keyword, lines, instances, found)?,
         // What makes further nodes or elements, or moves them: without it the mesh would be another one.
         "NGEN" | "NFILL" | "NCOPY" | "NMAP" | "ELGEN" | "ELCOPY" | "SYSTEM" | "PARAMETER" => {
-            let detail = format!("*{} is not read, and the mesh depends on it: write all nodes and elements", keyword.name);
+            let detail =
+                format!("*{} is not read, and the mesh depends on it: write all nodes and elements", keyword.name);
             return Err(MeshError::new(keyword.place, detail));
         }
         "STEP" => {

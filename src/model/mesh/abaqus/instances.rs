@@ -52,8 +52,14 @@ impl Instances {
     pub fn check_instance(&self, name: &str, place: MeshPlace) -> Result<(), MeshError> {
         match &self.instance {
             Some(instance) if instance.eq_ignore_ascii_case(name) => Ok(()),
-            Some(instance) => Err(MeshError::expected(place, format_args!("the instance `{instance}`"), quoted(name.as_bytes()))),
-            None => Err(MeshError::expected(place, "a set without INSTANCE, as there is no *INSTANCE", quoted(name.as_bytes()))),
+            Some(instance) => {
+                Err(MeshError::expected(place, format_args!("the instance `{instance}`"), quoted(name.as_bytes())))
+            }
+            None => Err(MeshError::expected(
+                place,
+                "a set without INSTANCE, as there is no *INSTANCE",
+                quoted(name.as_bytes()),
+            )),
         }
     }
 

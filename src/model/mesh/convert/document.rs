@@ -121,7 +121,8 @@ impl ElementNames<'_> {
 impl Serialize for ElementNames<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let labels = &self.0.mesh.elements.labels;
-        serializer.collect_seq(self.1.iter().filter_map(|element| labels.get(*element as usize)).map(|label| Name(*label)))
+        serializer
+            .collect_seq(self.1.iter().filter_map(|element| labels.get(*element as usize)).map(|label| Name(*label)))
     }
 }
 

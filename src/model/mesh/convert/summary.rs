@@ -20,9 +20,8 @@ pub fn lines(model: &ConvertedModel) -> Vec<String> {
     if !missing.is_empty() {
         lines.push(format!("add to `materials`: {}", listed(&missing)));
     }
-    let is_open = model.dimension == 2
-        && model.plane_state.is_none()
-        && mesh.elements.plane_states.iter().any(Option::is_none);
+    let is_open =
+        model.dimension == 2 && model.plane_state.is_none() && mesh.elements.plane_states.iter().any(Option::is_none);
     if is_open {
         lines.push("add `plane` to the elements: the file does not tell it; see --plane".to_owned());
     }

@@ -51,9 +51,7 @@ const fn topology(shape: ElementShape) -> Topology {
     let plain = Topology { name: "point", dimension: 0, corners: 1, edges: &[], quadratic: false, faces: &[] };
     match shape {
         ElementShape::Point => plain,
-        ElementShape::Segment2 => {
-            Topology { name: "segment2", dimension: 1, corners: 2, edges: &[[0, 1]], ..plain }
-        }
+        ElementShape::Segment2 => Topology { name: "segment2", dimension: 1, corners: 2, edges: &[[0, 1]], ..plain },
         ElementShape::Segment3 => Topology { name: "segment3", quadratic: true, ..topology(ElementShape::Segment2) },
         ElementShape::Triangle3 => Topology {
             name: "triangle3",
@@ -252,11 +250,7 @@ mod tests {
             }
             let corners_of_faces: usize = shape.faces().iter().map(|face| face.len()).sum();
             let shared = if shape.dimension() == 3 { 2 * shape.edges().len() } else { 2 * shape.corners() };
-            let between = if shape.is_quadratic() {
-                (shape.dimension() - 1) * shape.edges().len()
-            } else {
-                0
-            };
+            let between = if shape.is_quadratic() { (shape.dimension() - 1) * shape.edges().len() } else { 0 };
             assert_eq!(corners_of_faces, shared + between, "{shape:?}");
         }
     }

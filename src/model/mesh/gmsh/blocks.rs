@@ -84,7 +84,8 @@ pub fn elements(cursor: &mut Cursor, found: &mut Found) -> Result<(), MeshError>
             Some(entities) if entities.contains_key(&(header.dimension, header.tag)) => header.tag,
             Some(_) => {
                 let (dimension, tag) = (header.dimension, header.tag);
-                let detail = format!("dimension {dimension}, tag {tag}: `$Entities` does not have the elements' entity");
+                let detail =
+                    format!("dimension {dimension}, tag {tag}: `$Entities` does not have the elements' entity");
                 return Err(MeshError::new(cursor.place(), detail));
             }
             // Without entities there are no groups.

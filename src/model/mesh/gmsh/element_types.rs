@@ -29,9 +29,7 @@ pub fn element_type(number: i64) -> Result<(ElementShape, Option<&'static [usize
 fn order(shape: ElementShape) -> Option<&'static [usize]> {
     match shape {
         ElementShape::Tetrahedron10 => Some(&[0, 1, 2, 3, 4, 5, 6, 7, 9, 8]),
-        ElementShape::Hexahedron20 => {
-            Some(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15])
-        }
+        ElementShape::Hexahedron20 => Some(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15]),
         ElementShape::Point
         | ElementShape::Segment2
         | ElementShape::Segment3

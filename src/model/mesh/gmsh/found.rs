@@ -60,7 +60,8 @@ impl Found {
     /// # Errors
     /// A label is given twice.
     pub fn index_nodes(&mut self, place: MeshPlace) -> Result<(), MeshError> {
-        let index = LabelIndex::new(&self.node_labels).map_err(|second| repeated(&self.node_labels, second, "node", place))?;
+        let index =
+            LabelIndex::new(&self.node_labels).map_err(|second| repeated(&self.node_labels, second, "node", place))?;
         self.node_index = Some(index);
         Ok(())
     }

@@ -72,13 +72,7 @@ fn block(cursor: &mut Cursor, found: &mut Found, left: usize) -> Result<usize, M
 }
 
 /// Reads an element's tags, of which the first is its physical group, and its nodes.
-fn element(
-    cursor: &mut Cursor,
-    found: &mut Found,
-    kind: ElementKind,
-    label: u64,
-    tags: u64,
-) -> Result<(), MeshError> {
+fn element(cursor: &mut Cursor, found: &mut Found, kind: ElementKind, label: u64, tags: u64) -> Result<(), MeshError> {
     if tags > MOST_TAGS {
         return Err(too_many_tags(cursor.place(), kind.shape, tags));
     }
