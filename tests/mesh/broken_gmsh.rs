@@ -121,13 +121,16 @@ fn files_of_version_four() {
     assert!(read(late.as_bytes()).unwrap_err().to_string().contains("entities have to stand before `$Elements`"));
 }
 
+/// A file, a text in it, which byte after that is changed, to what, and what the error has to say.
+type BinaryCase<'a> = (&'a [u8], &'a [u8], usize, &'a [u8], &'a str);
+
 #[test]
 fn binary_files() {
     let [two, four] = ["cube_22_little.msh", "cube_41_little.msh"].map(sample);
     let after = |bytes: &[u8], text: &[u8]| {
         bytes.windows(text.len()).position(|window| window == text).expect("the text") + text.len()
     };
-    let cases: [(&[u8], &[u8], usize, &[u8], &str); 12] = [
+    let cases: [BinaryCase; 12] = [
         (&two, b"$MeshFormat\n2.2 1 8\n", 0, &[2, 0, 0, 0], "expected the number 1 in four bytes on the next line"),
         (&two, b"$MeshFormat\n2.2 1 ", 0, b"4", "expected 8 bytes for a number, found 4"),
         (&two, b"$Nodes\n", 0, b"9", "byte "),

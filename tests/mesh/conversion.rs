@@ -36,6 +36,7 @@ fn a_deck_becomes_a_model() {
         "4 nodes, 1 quadrilateral4; 2 sets, 1 surfaces, 1 materials",
         "1 nodes have no element and are left out",
         "line 20: not read: *STEP with all that it holds",
+        "NEO HOOKE is neo_hookean with the same moduli in small strains",
     ];
     assert_eq!(summary, lines);
 }

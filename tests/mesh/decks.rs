@@ -1,6 +1,6 @@
 //! Decks: sets, surfaces, materials, sections, parts, and what is not read.
 
-use crate::samples::{near, read};
+use crate::samples::{mesh, near, read, sample};
 use arcslip::model::mesh::data::mesh_data::{DeckLaw, Mesh, PlaneState};
 
 /// Two squares side by side, with most of what is read.
@@ -89,6 +89,18 @@ fn sets_of_labels_ranges_and_sets() {
     assert_eq!(sets, [("Left", &[0][..]), ("right", &[1]), ("both", &[0, 1]), ("withbars", &[0])]);
     let faces: Vec<&[u32]> = mesh.surfaces["underside"].iter().collect();
     assert_eq!(faces, [[0, 1], [1, 2], [2, 5]]);
+}
+
+#[test]
+fn ends_of_lines_and_marks_of_editors_change_nothing() {
+    let plain = deck(SQUARES);
+    let windows = read(&[b"\xef\xbb\xbf", SQUARES.replace('\n', "\r\n").as_bytes()].concat()).expect("a mesh");
+    assert_eq!((&plain.coordinates, &plain.node_sets), (&windows.coordinates, &windows.node_sets));
+    assert_eq!((&plain.elements.nodes, &plain.element_sets), (&windows.elements.nodes, &windows.element_sets));
+    for name in ["triangle6_41_text.msh", "hexahedron20_22_text.msh"] {
+        let text = String::from_utf8(sample(name)).expect("text").replace('\n', "\r\n");
+        assert_eq!(read(text.as_bytes()).expect("a mesh").node_sets, mesh(name).node_sets);
+    }
 }
 
 #[test]
@@ -184,7 +196,7 @@ fn faces_have_the_numbers_of_abaqus() {
 
 #[test]
 fn plane_elements_in_space_are_faces() {
-    let mesh = crate::samples::mesh("hexahedron8.inp");
+    let mesh = mesh("hexahedron8.inp");
     assert_eq!(mesh.dimension(), 3);
     assert_eq!(mesh.surfaces.keys().collect::<Vec<_>>(), ["Surface1", "Surface26", "bottom", "top"]);
     assert_eq!(mesh.surfaces["bottom"].len(), 2);

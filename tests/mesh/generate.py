@@ -147,19 +147,19 @@ def cube_22(order):
     return text + b"\n$EndElements\n"
 
 
-def cube_41(order):
-    """The same in version 4.1."""
-    text = b"$MeshFormat\n4.1 1 8\n" + struct.pack(order + "i", 1) + b"\n$EndMeshFormat\n" + NAMES + b"$Entities\n"
-    text += struct.pack(order + "4Q", 0, 0, 1, 1)
-    text += struct.pack(order + "i6dQiQ", 1, 0, 0, 0, 1, 1, 0, 1, 1, 0)
-    text += struct.pack(order + "i6dQiQ", 1, 0, 0, 0, 1, 1, 1, 1, 1, 0) + b"\n$EndEntities\n$Nodes\n"
-    text += struct.pack(order + "4Q", 1, 8, 1, 8) + struct.pack(order + "3iQ", 3, 1, 0, 8)
-    text += struct.pack(order + "8Q", *range(1, 9))
+def cube_41(order, size="Q"):
+    """The same in version 4.1, with counts and tags of 8 bytes (Q) or 4 (I)."""
+    text = b"$MeshFormat\n4.1 1 %d\n" % struct.calcsize(size) + struct.pack(order + "i", 1) + b"\n$EndMeshFormat\n" + NAMES + b"$Entities\n"
+    text += struct.pack(order + "4Q".replace("Q", size), 0, 0, 1, 1)
+    text += struct.pack(order + "i6dQiQ".replace("Q", size), 1, 0, 0, 0, 1, 1, 0, 1, 1, 0)
+    text += struct.pack(order + "i6dQiQ".replace("Q", size), 1, 0, 0, 0, 1, 1, 1, 1, 1, 0) + b"\n$EndEntities\n$Nodes\n"
+    text += struct.pack(order + "4Q".replace("Q", size), 1, 8, 1, 8) + struct.pack(order + "3iQ".replace("Q", size), 3, 1, 0, 8)
+    text += struct.pack(order + "8Q".replace("Q", size), *range(1, 9))
     for point in CUBE:
         text += struct.pack(order + "3d", *point)
-    text += b"\n$EndNodes\n$Elements\n" + struct.pack(order + "4Q", 2, 2, 1, 2)
-    text += struct.pack(order + "3iQ", 2, 1, 3, 1) + struct.pack(order + "5Q", 1, 1, 2, 3, 4)
-    text += struct.pack(order + "3iQ", 3, 1, 5, 1) + struct.pack(order + "9Q", 2, *range(1, 9))
+    text += b"\n$EndNodes\n$Elements\n" + struct.pack(order + "4Q".replace("Q", size), 2, 2, 1, 2)
+    text += struct.pack(order + "3iQ".replace("Q", size), 2, 1, 3, 1) + struct.pack(order + "5Q".replace("Q", size), 1, 1, 2, 3, 4)
+    text += struct.pack(order + "3iQ".replace("Q", size), 3, 1, 5, 1) + struct.pack(order + "9Q".replace("Q", size), 2, *range(1, 9))
     return text + b"\n$EndElements\n"
 
 
@@ -167,6 +167,7 @@ def write_cubes():
     for version, cube in (("22", cube_22), ("41", cube_41)):
         for order, name in (("<", "little"), (">", "big")):
             (SAMPLES / f"cube_{version}_{name}.msh").write_bytes(cube(order))
+    (SAMPLES / "cube_41_narrow.msh").write_bytes(cube_41("<", "I"))
 
 
 def rounded(values):
@@ -224,7 +225,9 @@ def summary(path):
 
 def generated():
     decks = [SAMPLES / f"{name}.inp" for name in (*PLANE, *SPACE)]
-    return sorted([*SAMPLES.glob("*.msh"), *decks])
+    # gmsh reads sizes of its own machine alone.
+    meshes = [path for path in SAMPLES.glob("*.msh") if path.name != "cube_41_narrow.msh"]
+    return sorted([*meshes, *decks])
 
 
 def main():

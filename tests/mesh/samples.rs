@@ -21,7 +21,7 @@ pub fn all() -> Vec<(String, Vec<u8>)> {
         })
         .collect();
     files.sort();
-    assert!(files.len() >= 59, "{} samples", files.len());
+    assert!(files.len() >= 60, "{} samples", files.len());
     files
 }
 

@@ -72,7 +72,10 @@ fn groups_have_the_nodes_that_gmsh_gives() {
     let mut compared = 0;
     for (name, bytes) in all().into_iter().filter(|(name, _)| name.ends_with(".msh")) {
         let mesh = read(&bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let groups = summaries[&name]["groups"].as_array().expect("groups");
+        let Some(groups) = summaries[&name]["groups"].as_array() else {
+            assert_eq!(name, "cube_41_narrow.msh", "no groups");
+            continue;
+        };
         for group in groups {
             let dimension = usize::try_from(group["dimension"].as_u64().expect("a dimension")).expect("a dimension");
             let set = match group["name"].as_str().expect("a name") {
@@ -129,6 +132,8 @@ fn both_orders_of_bytes_are_read() {
         assert_eq!(little.elements.nodes.get(0), [0, 1, 2, 3, 4, 5, 6, 7]);
         assert_eq!(little.surfaces, big.surfaces);
         assert_eq!(little.element_sets, big.element_sets);
+        let narrow = mesh("cube_41_narrow.msh");
+        assert_eq!((&narrow.elements.nodes, &narrow.surfaces), (&big.elements.nodes, &big.surfaces));
         // The file has the face with its normal inwards.
         assert_eq!(big.surfaces["bottom"].get(0), [0, 3, 2, 1]);
     }

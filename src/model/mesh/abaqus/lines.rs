@@ -1,9 +1,7 @@
 //! Lines of a deck: keywords with parameters, and data.
 
+use crate::model::input::limits::MAX_NAME_BYTES;
 use crate::model::mesh::data::error::{MeshError, MeshPlace, quoted};
-
-/// Bytes of a name at most.
-const MOST_NAME_BYTES: usize = 200;
 
 /// The lines of a deck that are no comments and not blank.
 #[derive(Debug, Clone)]
@@ -115,8 +113,8 @@ impl Keyword {
     /// It is not there, or empty, or too long for a name.
     pub fn required(&self, parameter: &str) -> Result<&str, MeshError> {
         match self.value(parameter) {
-            Some(value) if !value.is_empty() && value.len() <= MOST_NAME_BYTES => Ok(value),
-            Some(value) if value.len() > MOST_NAME_BYTES => {
+            Some(value) if !value.is_empty() && value.len() <= MAX_NAME_BYTES => Ok(value),
+            Some(value) if value.len() > MAX_NAME_BYTES => {
                 let found = format!("{} bytes", value.len());
                 Err(MeshError::expected(self.place, format_args!("at most 200 bytes for {parameter}"), found))
             }
@@ -180,7 +178,7 @@ impl<'a> DataLine<'a> {
     /// The field is something else.
     pub fn name(self, field: &'a [u8]) -> Result<&'a str, MeshError> {
         let name = std::str::from_utf8(field).ok().map(|name| name.trim_matches('"').trim());
-        let name = name.filter(|name| !name.is_empty() && name.len() <= MOST_NAME_BYTES);
+        let name = name.filter(|name| !name.is_empty() && name.len() <= MAX_NAME_BYTES);
         name.ok_or_else(|| MeshError::expected(self.place, "a name of at most 200 bytes", quoted(field)))
     }
 }

@@ -129,7 +129,7 @@ impl<'a> ResolvedSets<'a> {
             }
         } else {
             budget.take(labels.len(), place)?;
-            let is_in = |label: &u64| *label >= first && *label <= last && (*label - first) % step == 0;
+            let is_in = |label: &u64| *label >= first && *label <= last && (*label - first).is_multiple_of(step);
             members.extend((0_u32..).zip(labels.iter()).filter(|(_, label)| is_in(label)).map(|(place, _)| place));
             some_left_out = left_out.iter().any(is_in);
         }

@@ -1,6 +1,7 @@
 //! What a conversion tells its user.
 
 use crate::model::mesh::convert::ConvertedModel;
+use crate::model::mesh::data::mesh_data::DeckLaw;
 use indexmap::IndexMap;
 
 /// Names listed in a line at most.
@@ -19,6 +20,15 @@ pub fn lines(model: &ConvertedModel) -> Vec<String> {
     let missing: Vec<&str> = model.material_names.missing(mesh).collect();
     if !missing.is_empty() {
         lines.push(format!("add to `materials`: {}", listed(&missing)));
+    }
+    let has = |is_kind: fn(&DeckLaw) -> bool| {
+        mesh.materials.values().any(|material| material.law.as_ref().is_some_and(is_kind))
+    };
+    if has(|law| matches!(law, DeckLaw::LinearElastic { .. })) {
+        lines.push("*ELASTIC is linear_elastic, for small strains; saint_venant_kirchhoff also turns far".to_owned());
+    }
+    if has(|law| matches!(law, DeckLaw::NeoHookean { .. })) {
+        lines.push("NEO HOOKE is neo_hookean with the same moduli in small strains".to_owned());
     }
     let is_open =
         model.dimension == 2 && model.plane_state.is_none() && mesh.elements.plane_states.iter().any(Option::is_none);

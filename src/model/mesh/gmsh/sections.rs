@@ -1,14 +1,12 @@
 //! The sections of a file, one after another.
 
+use crate::model::input::limits::MAX_NAME_BYTES;
 use crate::model::mesh::data::error::{MeshError, MeshPlace, quoted};
 use crate::model::mesh::data::mesh_data::Mesh;
 use crate::model::mesh::gmsh::binary::BinaryLayout;
 use crate::model::mesh::gmsh::cursor::Cursor;
 use crate::model::mesh::gmsh::found::Found;
 use crate::model::mesh::gmsh::{blocks, entities, groups, legacy};
-
-/// Bytes of a group's name at most.
-const MOST_NAME_BYTES: usize = 200;
 
 /// The two families of versions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,7 +76,7 @@ fn section_name<'a>(cursor: &mut Cursor<'a>) -> Result<Option<&'a [u8]>, MeshErr
         return Ok(None);
     }
     match word.strip_prefix(b"$") {
-        Some(name) if !name.is_empty() && name.len() <= MOST_NAME_BYTES => Ok(Some(name)),
+        Some(name) if !name.is_empty() && name.len() <= MAX_NAME_BYTES => Ok(Some(name)),
         _ => Err(MeshError::expected(cursor.place(), "a section such as `$Nodes`", quoted(word))),
     }
 }
@@ -176,8 +174,8 @@ fn physical_names(cursor: &mut Cursor, found: &mut Found) -> Result<(), MeshErro
         let Some(dimension) = dimension else {
             return Err(MeshError::new(place, format!("the dimension of the group `{name}` is not 0 to 3")));
         };
-        if name.len() > MOST_NAME_BYTES {
-            return Err(MeshError::new(place, format!("a name of {} bytes, at most {MOST_NAME_BYTES}", name.len())));
+        if name.len() > MAX_NAME_BYTES {
+            return Err(MeshError::new(place, format!("a name of {} bytes, at most {MAX_NAME_BYTES}", name.len())));
         }
         if !name.is_empty() {
             found.names.insert((dimension, tag.saturating_abs()), name.to_owned());
