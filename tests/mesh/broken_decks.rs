@@ -104,4 +104,7 @@ fn what_is_no_mesh() {
     let long = format!("*NODE\n{}, 0\n", "x".repeat(100_000));
     let error = read(long.as_bytes()).unwrap_err().to_string();
     assert!(error.len() < 120, "{error}");
+    let many = format!("*NODE{}\n1, 0\n", ", GENERATE".repeat(101));
+    let error = read(many.as_bytes()).unwrap_err().to_string();
+    assert_eq!(error, "line 1: expected at most 100 parameters, found more");
 }

@@ -49,11 +49,11 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
         let name = if draft.mesh.node_sets.contains_key(&name) { format!("surface.{name}") } else { name };
         draft.mesh.node_sets.insert(name, nodes);
     }
-    finish(draft, found, elements)
+    Ok(finish(draft, found, elements))
 }
 
 /// Fills in what remains.
-fn finish(mut draft: MeshDraft, found: Definitions, elements: MeshElements) -> Result<Mesh, MeshError> {
+fn finish(mut draft: MeshDraft, found: Definitions, elements: MeshElements) -> Mesh {
     let count = |dimension| elements.shapes.iter().filter(|shape| shape.dimension() == dimension).count();
     let (plane, space) = (count(2), count(3));
     if plane > 0 && space > 0 {
@@ -65,7 +65,7 @@ fn finish(mut draft: MeshDraft, found: Definitions, elements: MeshElements) -> R
     draft.mesh.elements = elements;
     draft.mesh.materials = found.materials;
     draft.mesh.unread = found.unread;
-    Ok(draft.finish())
+    draft.finish()
 }
 
 /// The elements with nodes by place.

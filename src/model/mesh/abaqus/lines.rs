@@ -3,6 +3,9 @@
 use crate::model::input::limits::MAX_NAME_BYTES;
 use crate::model::mesh::data::error::{MeshError, MeshPlace, quoted};
 
+/// The name and the parameters of a keyword at most.
+const MOST_PARAMETERS: usize = 101;
+
 /// The lines of a deck that are no comments and not blank.
 #[derive(Debug, Clone)]
 pub struct DeckLines<'a> {
@@ -83,7 +86,12 @@ impl Keyword {
     fn parse(text: &[u8], place: MeshPlace) -> Result<Self, MeshError> {
         let utf8 = std::str::from_utf8(text);
         let text = utf8.map_err(|_| MeshError::expected(place, "a keyword line in UTF-8", quoted(text)))?;
-        let mut parts = unquoted_commas(text.trim_start_matches('*')).into_iter();
+        let parts = unquoted_commas(text.trim_start_matches('*'));
+        if parts.len() > MOST_PARAMETERS {
+            let expected = format!("at most {} parameters", MOST_PARAMETERS - 1);
+            return Err(MeshError::expected(place, expected, "more"));
+        }
+        let mut parts = parts.into_iter();
         let name = parts.next().unwrap_or_default();
         let name = name.split_ascii_whitespace().collect::<Vec<&str>>().join(" ").to_ascii_uppercase();
         if name.is_empty() {
@@ -126,14 +134,14 @@ impl Keyword {
     }
 }
 
-/// The parts of a text between commas that are not in quotes.
+/// The parts of a text between commas that are not in quotes, one more than may be at most.
 fn unquoted_commas(text: &str) -> Vec<&str> {
     let mut is_quoted = false;
     let split = |letter: char| {
         is_quoted ^= letter == '"';
         letter == ',' && !is_quoted
     };
-    text.split(split).collect()
+    text.split(split).take(MOST_PARAMETERS + 1).collect()
 }
 
 impl<'a> DataLine<'a> {

@@ -4,7 +4,7 @@ use crate::model::mesh::abaqus::definitions::{Definitions, SectionDefinition};
 use crate::model::mesh::abaqus::instances::Instances;
 use crate::model::mesh::abaqus::lines::{DeckLines, Keyword};
 use crate::model::mesh::data::error::{MeshError, MeshPlace};
-use crate::model::mesh::data::mesh_data::DeckLaw;
+use crate::model::mesh::data::mesh_data::{DeckLaw, DeckMaterial};
 
 /// Begins a material.
 pub fn material(keyword: &Keyword, found: &mut Definitions) -> Result<(), MeshError> {
@@ -12,7 +12,7 @@ pub fn material(keyword: &Keyword, found: &mut Definitions) -> Result<(), MeshEr
     if !found.material_names.insert(name.to_ascii_uppercase()) {
         return Err(MeshError::new(keyword.place, format!("the material `{name}` is there a second time")));
     }
-    found.materials.insert(name.to_owned(), Default::default());
+    found.materials.insert(name.to_owned(), DeckMaterial::default());
     Ok(())
 }
 
