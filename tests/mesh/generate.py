@@ -149,17 +149,19 @@ def cube_22(order):
 
 def cube_41(order, size="Q"):
     """The same in version 4.1, with counts and tags of 8 bytes (Q) or 4 (I)."""
-    text = b"$MeshFormat\n4.1 1 %d\n" % struct.calcsize(size) + struct.pack(order + "i", 1) + b"\n$EndMeshFormat\n" + NAMES + b"$Entities\n"
-    text += struct.pack(order + "4Q".replace("Q", size), 0, 0, 1, 1)
-    text += struct.pack(order + "i6dQiQ".replace("Q", size), 1, 0, 0, 0, 1, 1, 0, 1, 1, 0)
-    text += struct.pack(order + "i6dQiQ".replace("Q", size), 1, 0, 0, 0, 1, 1, 1, 1, 1, 0) + b"\n$EndEntities\n$Nodes\n"
-    text += struct.pack(order + "4Q".replace("Q", size), 1, 8, 1, 8) + struct.pack(order + "3iQ".replace("Q", size), 3, 1, 0, 8)
-    text += struct.pack(order + "8Q".replace("Q", size), *range(1, 9))
-    for point in CUBE:
-        text += struct.pack(order + "3d", *point)
-    text += b"\n$EndNodes\n$Elements\n" + struct.pack(order + "4Q".replace("Q", size), 2, 2, 1, 2)
-    text += struct.pack(order + "3iQ".replace("Q", size), 2, 1, 3, 1) + struct.pack(order + "5Q".replace("Q", size), 1, 1, 2, 3, 4)
-    text += struct.pack(order + "3iQ".replace("Q", size), 3, 1, 5, 1) + struct.pack(order + "9Q".replace("Q", size), 2, *range(1, 9))
+
+    def pack(form, *values):
+        return struct.pack(order + form.replace("Q", size), *values)
+
+    text = b"$MeshFormat\n4.1 1 %d\n" % struct.calcsize(size) + pack("i", 1) + b"\n$EndMeshFormat\n"
+    text += NAMES + b"$Entities\n" + pack("4Q", 0, 0, 1, 1)
+    text += pack("i6dQiQ", 1, 0, 0, 0, 1, 1, 0, 1, 1, 0)
+    text += pack("i6dQiQ", 1, 0, 0, 0, 1, 1, 1, 1, 1, 0) + b"\n$EndEntities\n$Nodes\n"
+    text += pack("4Q", 1, 8, 1, 8) + pack("3iQ", 3, 1, 0, 8) + pack("8Q", *range(1, 9))
+    text += b"".join(pack("3d", *point) for point in CUBE)
+    text += b"\n$EndNodes\n$Elements\n" + pack("4Q", 2, 2, 1, 2)
+    text += pack("3iQ", 2, 1, 3, 1) + pack("5Q", 1, 1, 2, 3, 4)
+    text += pack("3iQ", 3, 1, 5, 1) + pack("9Q", 2, *range(1, 9))
     return text + b"\n$EndElements\n"
 
 

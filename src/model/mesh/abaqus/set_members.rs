@@ -146,8 +146,8 @@ impl<'a> ResolvedSets<'a> {
         own.or_else(|| self.sets.get(&(Scope::Part, name))).map(|set| set.members.as_slice())
     }
 
-    /// The sets by name as written, without those for a program's own use. Where the part has a set of the same name, that
-    /// of the assembly is named `assembly.NAME`.
+    /// The sets by name as written, without those for a program's own use. Where the part has a set of the same name,
+    /// that of the assembly is named `assembly.NAME`.
     pub fn named(self) -> IndexMap<String, Vec<u32>> {
         let mut named: IndexMap<String, Vec<u32>> = IndexMap::new();
         for ((scope, _), set) in self.sets {

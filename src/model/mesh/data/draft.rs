@@ -15,8 +15,8 @@ pub struct MeshDraft {
 }
 
 impl MeshDraft {
-    /// The mesh: elements of the largest dimension remain. Those of one dimension less become the faces of a surface for
-    /// every set that they are in, and all normals of faces point outwards.
+    /// The mesh: elements of the largest dimension remain. Those of one dimension less become the faces of a surface
+    /// for every set that they are in, and all normals of faces point outwards.
     pub fn finish(self) -> Mesh {
         let Self { mut mesh, cell_sets } = self;
         let dimension = mesh.dimension();
@@ -57,7 +57,8 @@ fn kept(all: &MeshElements, keep: &[bool]) -> (MeshElements, Vec<Option<u32>>) {
     (elements, places)
 }
 
-/// Puts the members of a set into a set of elements and a surface of its name. `mesh.elements` still has all dimensions.
+/// Puts the members of a set into a set of elements and a surface of its name. `mesh.elements` still has all
+/// dimensions.
 fn split(mesh: &mut Mesh, dimension: usize, places: &[Option<u32>], name: String, members: &[u32]) {
     let mut set = Vec::new();
     let mut faces = NodeLists::default();

@@ -36,8 +36,8 @@ struct Topology {
     edges: &'static [[usize; 2]],
     /// Whether edges have nodes between their ends.
     quadratic: bool,
-    /// Nodes of the faces: corners, counterclockwise as seen from outside, then the nodes between them. In the plane the
-    /// element lies to the left of its faces. They stand in the order of the faces S1, S2, ... of Abaqus.
+    /// Nodes of the faces: corners, counterclockwise as seen from outside, then the nodes between them. In the plane
+    /// the element lies to the left of its faces. They stand in the order of the faces S1, S2, ... of Abaqus.
     faces: &'static [&'static [usize]],
 }
 
@@ -154,8 +154,8 @@ impl ElementShape {
         topology(self).edges
     }
 
-    /// Nodes of the faces: corners, counterclockwise as seen from outside, then the nodes between them; in the plane the
-    /// element lies to the left.
+    /// Nodes of the faces: corners, counterclockwise as seen from outside, then the nodes between them; in the plane
+    /// the element lies to the left.
     pub fn faces(self) -> &'static [&'static [usize]] {
         topology(self).faces
     }

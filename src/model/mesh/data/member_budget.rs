@@ -1,7 +1,7 @@
 //! A bound on the members of all sets of a mesh.
 //!
-//! A short line such as `1, 1000000, 1` stands for a million members, and a set of sets for as many again. So the members
-//! are bounded in proportion to the file before memory is asked for.
+//! A short line such as `1, 1000000, 1` stands for a million members, and a set of sets for as many again. So the
+//! members are bounded in proportion to the file before memory is asked for.
 
 use crate::model::mesh::data::error::{MeshError, MeshPlace};
 

@@ -20,8 +20,8 @@ pub struct Mesh {
     pub node_sets: IndexMap<String, Vec<u32>>,
     /// Sets of elements by name, ascending, each element once.
     pub element_sets: IndexMap<String, Vec<u32>>,
-    /// Surfaces by name: the nodes of each face, corners first, in the order in which the face's normal points out of its
-    /// element.
+    /// Surfaces by name: the nodes of each face, corners first, in the order in which the face's normal points out of
+    /// its element.
     pub surfaces: IndexMap<String, NodeLists>,
     /// Materials by name.
     pub materials: IndexMap<String, DeckMaterial>,

@@ -2,8 +2,8 @@
 
 use crate::model::mesh::data::element_shape::ElementShape;
 
-/// A kind of element by gmsh's number, with the place in gmsh's order of each node in VTK's order; no order where both are
-/// the same.
+/// A kind of element by gmsh's number, with the place in gmsh's order of each node in VTK's order; no order where both
+/// are the same.
 ///
 /// # Errors
 /// What is wrong with a kind that is not read.
