@@ -2,8 +2,8 @@
 //!
 //! A mesh file is read from memory: nothing here opens a file. Every format is read in linear time, and memory is asked
 //! for in proportion to the bytes that are there, whatever their header promises. Each folder imports only those before
-//! it: [`data`] has the mesh, [`gmsh`] and [`abaqus`] read it, [`convert`] writes a model. No crate keeps the sets of both
-//! versions of gmsh's format: `mshio` reads version 4.1 alone, without the names of groups; none reads decks.
+//! it: [`data`] has the mesh, [`gmsh`] and [`abaqus`] read it, [`convert`] writes a model. No crate keeps the sets of
+//! both versions of gmsh's format: `mshio` reads version 4.1 alone, without the names of groups; none reads decks.
 
 pub mod abaqus;
 pub mod convert;

@@ -1,6 +1,6 @@
 //! From a mesh to a model in JSON.
 //!
-//! [`ConvertedModel::new`] decides what goes into the model; [`document`] is its form, and [`line_format`] its lines.
+//! [`ConvertedModel::new`] decides what goes into the model; `document` is its form, and `line_format` its lines.
 
 mod document;
 mod line_format;
