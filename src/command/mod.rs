@@ -16,7 +16,6 @@ mod study;
 mod sweep;
 mod token;
 mod verify;
-pub(crate) mod verify_picture;
 mod work;
 
 use crate::command::options::input::MistakeFormat;

@@ -2,10 +2,10 @@
 
 use crate::samples::{mesh, read};
 use arcslip::model::mesh::convert::ConvertedModel;
-use arcslip::model::mesh::data::mesh_data::{Mesh, PlaneState};
+use arcslip::model::mesh::data::mesh_data::{MeshData, PlaneState};
 use serde_json::{Value, json};
 
-fn model(mesh: &Mesh, plane: Option<PlaneState>) -> (Value, Vec<String>) {
+fn model(mesh: &MeshData, plane: Option<PlaneState>) -> (Value, Vec<String>) {
     let converted = ConvertedModel::new(mesh, plane).unwrap_or_else(|error| panic!("{error}"));
     let request: Value = serde_json::from_str(&converted.json().expect("JSON")).expect("JSON");
     assert_eq!(request.as_object().expect("an object").len(), 1);

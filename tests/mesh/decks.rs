@@ -1,7 +1,7 @@
 //! Decks: sets, surfaces, materials, sections, parts, and what is not read.
 
 use crate::samples::{mesh, near, read, sample};
-use arcslip::model::mesh::data::mesh_data::{DeckLaw, Mesh, PlaneState};
+use arcslip::model::mesh::data::mesh_data::{DeckLaw, MeshData, PlaneState};
 
 /// Two squares side by side, with most of what is read.
 const SQUARES: &str = "\
@@ -61,7 +61,7 @@ bottom, 1, 2
 *END STEP
 ";
 
-fn deck(text: &str) -> Mesh {
+fn deck(text: &str) -> MeshData {
     read(text.as_bytes()).unwrap_or_else(|error| panic!("{error}"))
 }
 

@@ -1,7 +1,7 @@
 //! Nodes between corners, the sense of elements and of faces, on the straight-sided samples.
 
 use crate::samples::{all, mean, mesh, near, point, read};
-use arcslip::model::mesh::data::mesh_data::Mesh;
+use arcslip::model::mesh::data::mesh_data::MeshData;
 
 fn less(one: [f64; 3], other: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|axis| one[axis] - other[axis])
@@ -15,7 +15,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-fn points(mesh: &Mesh, nodes: &[u32]) -> Vec<[f64; 3]> {
+fn points(mesh: &MeshData, nodes: &[u32]) -> Vec<[f64; 3]> {
     nodes.iter().map(|node| point(mesh, *node)).collect()
 }
 

@@ -1,4 +1,4 @@
-//! Mesh files: what other programs read in them, their geometry, decks, broken and hostile files, conversion.
+//! MeshData files: what other programs read in them, their geometry, decks, broken and hostile files, conversion.
 //!
 //! `generate.py` makes the files in `samples` and what other programs read in them, `summaries.json`.
 

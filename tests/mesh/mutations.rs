@@ -2,7 +2,7 @@
 
 use crate::samples::{all, read};
 use arcslip::model::mesh::convert::ConvertedModel;
-use arcslip::model::mesh::data::mesh_data::Mesh;
+use arcslip::model::mesh::data::mesh_data::MeshData;
 
 /// Bytes of memory for each byte of a file, and for any file.
 const MEMORY: (u64, u64) = (400, 8_000_000);
@@ -36,7 +36,7 @@ fn survives(name: &str, bytes: &[u8]) -> bool {
     true
 }
 
-fn check(name: &str, mesh: &Mesh) {
+fn check(name: &str, mesh: &MeshData) {
     let nodes = mesh.node_labels.len();
     assert_eq!(mesh.coordinates.len(), nodes, "{name}");
     assert!(mesh.coordinates.iter().flatten().all(|coordinate| coordinate.is_finite()), "{name}");

@@ -2,7 +2,7 @@
 
 use arcslip::model::mesh::MeshFormat;
 use arcslip::model::mesh::data::error::MeshError;
-use arcslip::model::mesh::data::mesh_data::Mesh;
+use arcslip::model::mesh::data::mesh_data::MeshData;
 use std::path::{Path, PathBuf};
 
 pub fn folder() -> PathBuf {
@@ -29,15 +29,15 @@ pub fn sample(name: &str) -> Vec<u8> {
     std::fs::read(folder().join("samples").join(name)).expect("a sample to read")
 }
 
-pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
+pub fn read(bytes: &[u8]) -> Result<MeshData, MeshError> {
     MeshFormat::of(bytes)?.read(bytes)
 }
 
-pub fn mesh(name: &str) -> Mesh {
+pub fn mesh(name: &str) -> MeshData {
     read(&sample(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-pub fn point(mesh: &Mesh, node: u32) -> [f64; 3] {
+pub fn point(mesh: &MeshData, node: u32) -> [f64; 3] {
     mesh.coordinates[node as usize]
 }
 

@@ -1,7 +1,7 @@
 //! Every sample beside what meshio and gmsh read in it.
 
 use crate::samples::{all, folder, mesh, near, point, read};
-use arcslip::model::mesh::data::mesh_data::Mesh;
+use arcslip::model::mesh::data::mesh_data::MeshData;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -28,7 +28,7 @@ fn numbers(value: &Value) -> Vec<f64> {
 
 /// For each kind the number of elements, and the squares of coordinates weighed by the place of the node; as the
 /// generator has it.
-fn places(mesh: &Mesh) -> BTreeMap<&'static str, (u64, [f64; 3])> {
+fn places(mesh: &MeshData) -> BTreeMap<&'static str, (u64, [f64; 3])> {
     let mut found: BTreeMap<&'static str, (u64, [f64; 3])> = BTreeMap::new();
     for (shape, nodes) in mesh.elements.shapes.iter().zip(mesh.elements.nodes.iter()) {
         let entry = found.entry(shape.name()).or_default();

@@ -11,7 +11,7 @@ pub mod data;
 pub mod gmsh;
 
 use data::error::{MeshError, MeshPlace, quoted};
-use data::mesh_data::Mesh;
+use data::mesh_data::MeshData;
 
 /// A format of mesh files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,7 +52,7 @@ impl MeshFormat {
     ///
     /// # Errors
     /// The first mistake, with its line or byte, what was expected and what was found.
-    pub fn read(self, bytes: &[u8]) -> Result<Mesh, MeshError> {
+    pub fn read(self, bytes: &[u8]) -> Result<MeshData, MeshError> {
         match self {
             Self::Gmsh => gmsh::read(without_mark(bytes)),
             Self::Abaqus => abaqus::read(without_mark(bytes)),

@@ -8,7 +8,7 @@ use crate::model::mesh::data::element_shape::ElementShape;
 use crate::model::mesh::data::error::{MeshError, MeshPlace};
 use crate::model::mesh::data::label_index::LabelIndex;
 use crate::model::mesh::data::member_budget::MemberBudget;
-use crate::model::mesh::data::mesh_data::{Mesh, MeshElements, MeshSection};
+use crate::model::mesh::data::mesh_data::{MeshData, MeshElements, MeshSection};
 use crate::model::mesh::data::node_lists::NodeLists;
 use std::collections::HashSet;
 
@@ -16,7 +16,7 @@ use std::collections::HashSet;
 ///
 /// # Errors
 /// The first mistake, with its line.
-pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
+pub fn read(bytes: &[u8]) -> Result<MeshData, MeshError> {
     let mut found = deck::definitions(bytes)?;
     let mut budget = MemberBudget::new(bytes.len());
     let node_index = LabelIndex::new(&found.node_labels).map_err(|second| repeated_node(&found, second))?;
@@ -53,7 +53,7 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
 }
 
 /// Fills in what remains.
-fn finish(mut draft: MeshDraft, found: Definitions, elements: MeshElements) -> Mesh {
+fn finish(mut draft: MeshDraft, found: Definitions, elements: MeshElements) -> MeshData {
     let count = |dimension| elements.shapes.iter().filter(|shape| shape.dimension() == dimension).count();
     let (plane, space) = (count(2), count(3));
     if plane > 0 && space > 0 {

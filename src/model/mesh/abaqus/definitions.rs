@@ -9,7 +9,7 @@ use std::collections::HashSet;
 
 /// Where a name is defined: a part and its assembly may use the same one for two sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Scope {
+pub enum NameScope {
     /// In the part, its instance, or a deck without parts.
     Part,
     /// In the assembly.
@@ -33,7 +33,7 @@ pub enum SetItem {
 #[derive(Debug, Clone)]
 pub struct SetDefinition {
     /// Where it is defined.
-    pub scope: Scope,
+    pub scope: NameScope,
     /// Its name as written.
     pub name: String,
     /// Whether it is one that the program's author made for its own use.
@@ -59,7 +59,7 @@ pub struct SurfaceRow {
 #[derive(Debug, Clone)]
 pub struct SurfaceDefinition {
     /// Where it is defined.
-    pub scope: Scope,
+    pub scope: NameScope,
     /// Its name as written.
     pub name: String,
     /// Whether it consists of nodes instead of faces.
@@ -72,7 +72,7 @@ pub struct SurfaceDefinition {
 #[derive(Debug, Clone)]
 pub struct SectionDefinition {
     /// Where it is defined.
-    pub scope: Scope,
+    pub scope: NameScope,
     /// The set of its elements.
     pub element_set: String,
     /// Its material.
@@ -85,7 +85,7 @@ pub struct SectionDefinition {
 
 /// Elements of one keyword.
 #[derive(Debug, Clone)]
-pub struct ElementBlock {
+pub struct DeckElementBlock {
     /// Their kind.
     pub shape: ElementShape,
     /// What holds in the third direction.
@@ -108,7 +108,7 @@ pub struct Definitions {
     /// For each `*NODE` its line and the number of nodes before it.
     pub node_blocks: Vec<(MeshPlace, usize)>,
     /// Elements.
-    pub element_blocks: Vec<ElementBlock>,
+    pub element_blocks: Vec<DeckElementBlock>,
     /// Number of elements.
     pub elements: usize,
     /// Labels of elements of types that are not read.

@@ -1,6 +1,6 @@
 //! `*NODE` and `*ELEMENT`.
 
-use crate::model::mesh::abaqus::definitions::{Definitions, ElementBlock, SetDefinition, SetItem};
+use crate::model::mesh::abaqus::definitions::{DeckElementBlock, Definitions, SetDefinition, SetItem};
 use crate::model::mesh::abaqus::element_types::{DeckElementType, deck_element_type};
 use crate::model::mesh::abaqus::instances::Instances;
 use crate::model::mesh::abaqus::lines::{DeckLines, Keyword, label};
@@ -64,7 +64,7 @@ pub fn elements(
                 found.unread.add(keyword.place, format!("the ending {variant} of {name}, which is read as {plain}"));
             }
             let mut block =
-                ElementBlock { shape, plane_state, place: keyword.place, labels: Vec::new(), nodes: Vec::new() };
+                DeckElementBlock { shape, plane_state, place: keyword.place, labels: Vec::new(), nodes: Vec::new() };
             while read_element(lines, &mut block)? {}
             found.elements += block.labels.len();
             found.element_blocks.push(block);
@@ -78,7 +78,7 @@ pub fn elements(
 }
 
 /// Reads one element, if there is one.
-fn read_element(lines: &mut DeckLines, block: &mut ElementBlock) -> Result<bool, MeshError> {
+fn read_element(lines: &mut DeckLines, block: &mut DeckElementBlock) -> Result<bool, MeshError> {
     let Some(mut line) = lines.next_data() else { return Ok(false) };
     let mut fields = line.fields();
     let label = line.label(fields.next().unwrap_or_default(), "the label of an element")?;

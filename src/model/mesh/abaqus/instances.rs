@@ -1,6 +1,6 @@
 //! Parts, instances and the assembly: one part in its own place is read.
 
-use crate::model::mesh::abaqus::definitions::Scope;
+use crate::model::mesh::abaqus::definitions::NameScope;
 use crate::model::mesh::abaqus::lines::{DeckLines, Keyword};
 use crate::model::mesh::data::error::{MeshError, MeshPlace, quoted};
 
@@ -15,8 +15,8 @@ pub struct Instances {
 
 impl Instances {
     /// Where names are defined now.
-    pub fn scope(&self) -> Scope {
-        if self.is_assembly() { Scope::Assembly } else { Scope::Part }
+    pub fn scope(&self) -> NameScope {
+        if self.is_assembly() { NameScope::Assembly } else { NameScope::Part }
     }
 
     /// Whether what stands here belongs to the assembly itself.

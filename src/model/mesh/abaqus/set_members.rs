@@ -1,6 +1,6 @@
 //! Members of sets by place.
 
-use crate::model::mesh::abaqus::definitions::{Scope, SetDefinition, SetItem};
+use crate::model::mesh::abaqus::definitions::{NameScope, SetDefinition, SetItem};
 use crate::model::mesh::data::error::{MeshError, MeshPlace};
 use crate::model::mesh::data::label_index::LabelIndex;
 use crate::model::mesh::data::member_budget::MemberBudget;
@@ -24,7 +24,7 @@ pub struct Population<'a> {
 #[derive(Debug)]
 pub struct ResolvedSets<'a> {
     population: Population<'a>,
-    sets: IndexMap<(Scope, String), ResolvedSet>,
+    sets: IndexMap<(NameScope, String), ResolvedSet>,
 }
 
 #[derive(Debug)]
@@ -73,7 +73,7 @@ impl<'a> ResolvedSets<'a> {
         &self,
         members: &mut Vec<u32>,
         item: &SetItem,
-        scope: Scope,
+        scope: NameScope,
         place: MeshPlace,
         budget: &mut MemberBudget,
     ) -> Result<(), MeshError> {
@@ -140,10 +140,10 @@ impl<'a> ResolvedSets<'a> {
     }
 
     /// The members of a set by its name, upper and lower case alike; one of the part where the assembly has none.
-    pub fn get(&self, scope: Scope, name: &str) -> Option<&[u32]> {
+    pub fn get(&self, scope: NameScope, name: &str) -> Option<&[u32]> {
         let name = name.to_ascii_uppercase();
         let own = self.sets.get(&(scope, name.clone()));
-        own.or_else(|| self.sets.get(&(Scope::Part, name))).map(|set| set.members.as_slice())
+        own.or_else(|| self.sets.get(&(NameScope::Part, name))).map(|set| set.members.as_slice())
     }
 
     /// The sets by name as written, without those for a program's own use. Where the part has a set of the same name,
@@ -154,7 +154,7 @@ impl<'a> ResolvedSets<'a> {
             if set.is_internal || set.members.is_empty() {
                 continue;
             }
-            let is_taken = scope == Scope::Assembly && named.contains_key(&set.name);
+            let is_taken = scope == NameScope::Assembly && named.contains_key(&set.name);
             let name = if is_taken { format!("assembly.{}", set.name) } else { set.name };
             named.insert(name, set.members);
         }

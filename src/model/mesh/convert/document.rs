@@ -10,18 +10,18 @@ use serde::{Serialize, Serializer};
 /// The request that the model is in.
 #[derive(Debug, Serialize)]
 pub struct Request<'a> {
-    model: Body<'a>,
+    model: ModelBody<'a>,
 }
 
 #[derive(Debug, Serialize)]
-struct Body<'a> {
+struct ModelBody<'a> {
     dimension: usize,
-    nodes: Nodes<'a>,
+    nodes: NodeEntries<'a>,
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     materials: IndexMap<&'a str, &'a DeckMaterial>,
-    elements: Elements<'a>,
+    elements: ElementEntries<'a>,
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
-    surfaces: IndexMap<&'a str, Surface<'a>>,
+    surfaces: IndexMap<&'a str, SurfaceEntry<'a>>,
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     sets: IndexMap<&'a str, NamedSet<'a>>,
     stages: [EmptyStage; 1],
@@ -55,12 +55,16 @@ impl<'a> Request<'a> {
             elements: ElementNames(model, mesh.element_sets.get(name).map_or(&[], Vec::as_slice)),
         };
         let sets = names.map(|name| (name.as_str(), set(name)));
-        let body = Body {
+        let body = ModelBody {
             dimension: model.dimension,
-            nodes: Nodes(model),
+            nodes: NodeEntries(model),
             materials: described.map(|(name, material)| (name.as_str(), material)).collect(),
-            elements: Elements(model),
-            surfaces: mesh.surfaces.iter().map(|(name, faces)| (name.as_str(), Surface::new(model, faces))).collect(),
+            elements: ElementEntries(model),
+            surfaces: mesh
+                .surfaces
+                .iter()
+                .map(|(name, faces)| (name.as_str(), SurfaceEntry::new(model, faces)))
+                .collect(),
             sets: sets.filter(|(_, set)| !(set.nodes.is_empty() && set.elements.is_empty())).collect(),
             stages: [EmptyStage { name: "loads" }],
         };
@@ -79,9 +83,9 @@ impl Serialize for Name {
 }
 
 #[derive(Debug)]
-struct Nodes<'a>(&'a ConvertedModel<'a>);
+struct NodeEntries<'a>(&'a ConvertedModel<'a>);
 
-impl Serialize for Nodes<'_> {
+impl Serialize for NodeEntries<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mesh = self.0.mesh;
         let mut map = serializer.serialize_map(None)?;
@@ -127,7 +131,7 @@ impl Serialize for ElementNames<'_> {
 }
 
 #[derive(Debug)]
-struct Elements<'a>(&'a ConvertedModel<'a>);
+struct ElementEntries<'a>(&'a ConvertedModel<'a>);
 
 #[derive(Debug, Serialize)]
 struct SolidEntry<'a> {
@@ -141,7 +145,7 @@ struct SolidEntry<'a> {
     thickness: Option<f64>,
 }
 
-impl Serialize for Elements<'_> {
+impl Serialize for ElementEntries<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let model = self.0;
         let elements = &model.mesh.elements;
@@ -168,11 +172,11 @@ impl Serialize for Elements<'_> {
 
 /// A surface: `{"faces": [["1", "2"], ...]}`.
 #[derive(Debug, Serialize)]
-struct Surface<'a> {
+struct SurfaceEntry<'a> {
     faces: Vec<NodeNames<'a>>,
 }
 
-impl<'a> Surface<'a> {
+impl<'a> SurfaceEntry<'a> {
     /// The faces whose nodes are all in the model.
     fn new(model: &'a ConvertedModel<'a>, faces: &'a NodeLists) -> Self {
         let faces = faces.iter().filter(|face| model.used(face).count() == face.len());

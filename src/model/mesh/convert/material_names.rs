@@ -1,6 +1,6 @@
 //! The material of each element.
 
-use crate::model::mesh::data::mesh_data::{Mesh, MeshSection};
+use crate::model::mesh::data::mesh_data::{MeshData, MeshSection};
 use std::collections::HashMap;
 
 /// The material of elements that are in no set.
@@ -17,7 +17,7 @@ pub struct MaterialNames {
 impl MaterialNames {
     /// The material of an element is that of its section. Without a section it has the name of the first set that the
     /// element is in, so that a file of gmsh leads to one material for each group.
-    pub fn new(mesh: &Mesh) -> Self {
+    pub fn new(mesh: &MeshData) -> Self {
         let mut known = Known::default();
         let mut by_element: Vec<Option<usize>> = Vec::with_capacity(mesh.elements.len());
         // Upper and lower case are alike in decks.
@@ -50,7 +50,7 @@ impl MaterialNames {
     }
 
     /// Materials that elements name and the file does not describe.
-    pub fn missing<'a>(&'a self, mesh: &'a Mesh) -> impl Iterator<Item = &'a str> {
+    pub fn missing<'a>(&'a self, mesh: &'a MeshData) -> impl Iterator<Item = &'a str> {
         let described = |name: &str| mesh.materials.get(name).is_some_and(|material| material.law.is_some());
         self.names.iter().map(String::as_str).filter(move |name| !described(name))
     }

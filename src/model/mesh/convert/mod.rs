@@ -8,7 +8,7 @@ mod material_names;
 mod summary;
 
 use crate::model::mesh::data::error::{MeshError, MeshPlace};
-use crate::model::mesh::data::mesh_data::{Mesh, PlaneState};
+use crate::model::mesh::data::mesh_data::{MeshData, PlaneState};
 use material_names::MaterialNames;
 
 pub use document::NamedSet;
@@ -21,7 +21,7 @@ const FLATNESS: f64 = 1e-9;
 /// Names of nodes and elements are the file's labels. A node without an element has no stiffness and is left out.
 #[derive(Debug)]
 pub struct ConvertedModel<'a> {
-    mesh: &'a Mesh,
+    mesh: &'a MeshData,
     /// 2 or 3.
     dimension: usize,
     /// Whether a node has an element.
@@ -36,7 +36,7 @@ impl<'a> ConvertedModel<'a> {
     ///
     /// # Errors
     /// The mesh has no solids, or plane elements that do not lie in a plane of constant z.
-    pub fn new(mesh: &'a Mesh, plane_state: Option<PlaneState>) -> Result<Self, MeshError> {
+    pub fn new(mesh: &'a MeshData, plane_state: Option<PlaneState>) -> Result<Self, MeshError> {
         let dimension = mesh.dimension();
         if dimension < 2 {
             let detail = "expected triangles, quadrilaterals, tetrahedra or hexahedra, found none";
@@ -78,7 +78,7 @@ impl<'a> ConvertedModel<'a> {
 }
 
 /// Checks that the nodes of plane elements have the same z.
-fn check_flat(mesh: &Mesh, is_used: &[bool]) -> Result<(), MeshError> {
+fn check_flat(mesh: &MeshData, is_used: &[bool]) -> Result<(), MeshError> {
     let used = || mesh.coordinates.iter().zip(&mesh.node_labels).zip(is_used).filter(|(_, is_used)| **is_used);
     let mut first = None;
     let mut size = 0.0_f64;

@@ -1,7 +1,7 @@
 //! From what a reader found to a mesh.
 
 use crate::model::mesh::data::face_orientation::{orient_faces, turn_clockwise_elements};
-use crate::model::mesh::data::mesh_data::{Mesh, MeshElements};
+use crate::model::mesh::data::mesh_data::{MeshData, MeshElements};
 use crate::model::mesh::data::node_lists::NodeLists;
 use indexmap::IndexMap;
 
@@ -9,7 +9,7 @@ use indexmap::IndexMap;
 #[derive(Debug, Default)]
 pub struct MeshDraft {
     /// The mesh; `elements` may hold points, lines and faces beside solids, and `element_sets` is empty.
-    pub mesh: Mesh,
+    pub mesh: MeshData,
     /// Sets of these elements by name, ascending.
     pub cell_sets: IndexMap<String, Vec<u32>>,
 }
@@ -17,7 +17,7 @@ pub struct MeshDraft {
 impl MeshDraft {
     /// The mesh: elements of the largest dimension remain. Those of one dimension less become the faces of a surface
     /// for every set that they are in, and all normals of faces point outwards.
-    pub fn finish(self) -> Mesh {
+    pub fn finish(self) -> MeshData {
         let Self { mut mesh, cell_sets } = self;
         let dimension = mesh.dimension();
         let is_element: Vec<bool> = mesh.elements.shapes.iter().map(|shape| shape.dimension() == dimension).collect();
@@ -59,7 +59,7 @@ fn kept(all: &MeshElements, keep: &[bool]) -> (MeshElements, Vec<Option<u32>>) {
 
 /// Puts the members of a set into a set of elements and a surface of its name. `mesh.elements` still has all
 /// dimensions.
-fn split(mesh: &mut Mesh, dimension: usize, places: &[Option<u32>], name: String, members: &[u32]) {
+fn split(mesh: &mut MeshData, dimension: usize, places: &[Option<u32>], name: String, members: &[u32]) {
     let mut set = Vec::new();
     let mut faces = NodeLists::default();
     for member in members.iter().filter_map(|member| usize::try_from(*member).ok()) {
@@ -80,7 +80,7 @@ fn split(mesh: &mut Mesh, dimension: usize, places: &[Option<u32>], name: String
 }
 
 /// Gives plane elements and faces their sense.
-fn orient(mesh: &mut Mesh, dimension: usize) {
+fn orient(mesh: &mut MeshData, dimension: usize) {
     if dimension == 2 {
         let turned = turn_clockwise_elements(&mut mesh.elements, &mesh.coordinates);
         if turned > 0 {

@@ -9,7 +9,7 @@ use indexmap::IndexMap;
 ///
 /// Nodes and elements are numbered from 0 in the order of the file; sets and surfaces hold these numbers.
 #[derive(Debug, Clone, Default)]
-pub struct Mesh {
+pub struct MeshData {
     /// Labels of the nodes in the file.
     pub node_labels: Vec<u64>,
     /// Coordinates of the nodes (length); zero where the file gives none.
@@ -33,7 +33,7 @@ pub struct Mesh {
     pub remarks: Vec<String>,
 }
 
-impl Mesh {
+impl MeshData {
     /// The largest dimension of an element: 3 for solids in space, 2 for solids in the plane; 0 without elements.
     pub fn dimension(&self) -> usize {
         self.elements.shapes.iter().map(|shape| shape.dimension()).max().unwrap_or(0)
@@ -51,7 +51,7 @@ pub struct MeshElements {
     pub nodes: NodeLists,
     /// What the file says of the third direction of plane elements.
     pub plane_states: Vec<Option<PlaneState>>,
-    /// Places in [`Mesh::sections`].
+    /// Places in [`MeshData::sections`].
     pub sections: Vec<Option<u32>>,
 }
 
@@ -132,13 +132,13 @@ pub enum DeckLaw {
         /// Poisson's ratio.
         poisson: f64,
     },
-    /// `W = c10 (I1 - 3) + c01 (I2 - 3) + bulk_modulus / 2 (J - 1)²` with the invariants of the isochoric part.
+    /// `W = c10 (I1 - 3) + c01 (I2 - 3) + U(J)` with the invariants of the isochoric part (Mooney 1940, Rivlin 1948).
     MooneyRivlin {
         /// Coefficient of the first invariant (stress).
         c10: f64,
         /// Coefficient of the second invariant (stress).
         c01: f64,
-        /// Bulk modulus (stress).
+        /// Bulk modulus at zero strain (stress).
         bulk_modulus: f64,
     },
 }

@@ -1,6 +1,6 @@
 //! A mesh as plain data: nodes, elements of the kinds that have stiffness, sets, surfaces.
 //!
-//! [`draft`] makes a [`Mesh`](mesh_data::Mesh) of what a reader found, the same way for every format.
+//! [`draft`] makes a [`MeshData`](mesh_data::MeshData) of what a reader found, the same way for every format.
 
 pub mod draft;
 pub mod element_shape;

@@ -1,11 +1,11 @@
 //! Nodes and elements of version 4.1, in blocks by geometrical entity.
 
 use crate::model::mesh::data::error::MeshError;
-use crate::model::mesh::gmsh::cursor::{Cursor, Record};
-use crate::model::mesh::gmsh::element_record::{ElementKind, TagType, read_element};
-use crate::model::mesh::gmsh::found::Found;
+use crate::model::mesh::gmsh::cursor::{Cursor, RecordSize};
+use crate::model::mesh::gmsh::element_record::{ReadKind, TagType, read_element};
+use crate::model::mesh::gmsh::found::GmshContents;
 
-const NODE: Record = Record { ints: 0, sizes: 1, doubles: 3 };
+const NODE: RecordSize = RecordSize { ints: 0, sizes: 1, doubles: 3 };
 
 /// The header of a block: three numbers and a count.
 struct BlockHeader {
@@ -23,7 +23,7 @@ fn section_header(cursor: &mut Cursor, what: &str) -> Result<(usize, u64), MeshE
     let count = cursor.size(what)?;
     cursor.size("the least tag")?;
     cursor.size("the largest tag")?;
-    let blocks = cursor.fitting(blocks, Record { ints: 3, sizes: 1, doubles: 0 }, "blocks")?;
+    let blocks = cursor.fitting(blocks, RecordSize { ints: 3, sizes: 1, doubles: 0 }, "blocks")?;
     Ok((blocks, count))
 }
 
@@ -40,13 +40,13 @@ fn block_header(cursor: &mut Cursor, third: &str) -> Result<BlockHeader, MeshErr
 }
 
 /// Reads the nodes: in each block their tags, then their coordinates, with those on the entity where it is parametric.
-pub fn nodes(cursor: &mut Cursor, found: &mut Found) -> Result<(), MeshError> {
+pub fn nodes(cursor: &mut Cursor, found: &mut GmshContents) -> Result<(), MeshError> {
     let (blocks, announced) = section_header(cursor, "the number of nodes")?;
     found.reserve_nodes(cursor, announced, NODE)?;
     for _ in 0..blocks {
         let header = block_header(cursor, "whether nodes are parametric, 0 or 1")?;
         let parameters = if header.third == 0 { 0 } else { header.dimension };
-        let record = Record { doubles: 3 + parameters, ..NODE };
+        let record = RecordSize { doubles: 3 + parameters, ..NODE };
         let count = cursor.fitting(header.count, record, "nodes")?;
         for _ in 0..count {
             found.node_labels.push(cursor.size("the tag of a node")?);
@@ -67,13 +67,13 @@ pub fn nodes(cursor: &mut Cursor, found: &mut Found) -> Result<(), MeshError> {
 }
 
 /// Reads the elements: in each block a tag and nodes for each.
-pub fn elements(cursor: &mut Cursor, found: &mut Found) -> Result<(), MeshError> {
+pub fn elements(cursor: &mut Cursor, found: &mut GmshContents) -> Result<(), MeshError> {
     let (blocks, announced) = section_header(cursor, "the number of elements")?;
-    cursor.fitting(announced, Record { ints: 0, sizes: 2, doubles: 0 }, "elements")?;
+    cursor.fitting(announced, RecordSize { ints: 0, sizes: 2, doubles: 0 }, "elements")?;
     for _ in 0..blocks {
         let header = block_header(cursor, "the type of elements")?;
-        let kind = ElementKind::new(header.third, cursor.place())?;
-        let record = Record { sizes: 1 + kind.shape.nodes(), ..Record::default() };
+        let kind = ReadKind::new(header.third, cursor.place())?;
+        let record = RecordSize { sizes: 1 + kind.shape.nodes(), ..RecordSize::default() };
         let count = cursor.fitting(header.count, record, "elements")?;
         found.elements.nodes.reserve(count, count * kind.shape.nodes());
         for _ in 0..count {

@@ -14,7 +14,7 @@ pub struct Cursor<'a> {
 
 /// Bytes that numbers take at least.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Record {
+pub struct RecordSize {
     /// Numbers of the type `int`.
     pub ints: usize,
     /// Numbers of the type `size_t`.
@@ -101,7 +101,7 @@ impl<'a> Cursor<'a> {
     ///
     /// # Errors
     /// The rest of the file is too short for so many.
-    pub fn fitting(&self, count: u64, record: Record, what: &str) -> Result<usize, MeshError> {
+    pub fn fitting(&self, count: u64, record: RecordSize, what: &str) -> Result<usize, MeshError> {
         let bytes = match self.layout {
             Some(layout) => 4 * record.ints + layout.size_bytes * record.sizes + 8 * record.doubles,
             // A digit and a blank.

@@ -4,17 +4,17 @@ use crate::model::mesh::data::element_shape::ElementShape;
 use crate::model::mesh::data::error::{MeshError, MeshPlace};
 use crate::model::mesh::gmsh::cursor::Cursor;
 use crate::model::mesh::gmsh::element_types::element_type;
-use crate::model::mesh::gmsh::found::Found;
+use crate::model::mesh::gmsh::found::GmshContents;
 
 /// A kind of element that is being read.
 #[derive(Debug, Clone, Copy)]
-pub struct ElementKind {
+pub struct ReadKind {
     /// Its shape.
     pub shape: ElementShape,
     order: Option<&'static [usize]>,
 }
 
-impl ElementKind {
+impl ReadKind {
     /// The kind of gmsh's number.
     ///
     /// # Errors
@@ -40,8 +40,8 @@ pub enum TagType {
 /// A number is missing, or a node is not there or stands twice.
 pub fn read_element(
     cursor: &mut Cursor,
-    found: &mut Found,
-    kind: ElementKind,
+    found: &mut GmshContents,
+    kind: ReadKind,
     label: u64,
     tag_type: TagType,
 ) -> Result<(), MeshError> {

@@ -1,22 +1,22 @@
 //! Geometrical entities of version 4.1 and their physical groups.
 
 use crate::model::mesh::data::error::MeshError;
-use crate::model::mesh::gmsh::cursor::{Cursor, Record};
-use crate::model::mesh::gmsh::found::Found;
+use crate::model::mesh::gmsh::cursor::{Cursor, RecordSize};
+use crate::model::mesh::gmsh::found::GmshContents;
 
 /// Reads `$Entities`: for each its tag, its place, its physical groups, and what bounds it.
-pub fn entities(cursor: &mut Cursor, found: &mut Found) -> Result<(), MeshError> {
+pub fn entities(cursor: &mut Cursor, found: &mut GmshContents) -> Result<(), MeshError> {
     cursor.begin_numbers()?;
     list(cursor, found, false)?;
     cursor.keyword("$EndEntities")
 }
 
 /// Reads `$PartitionedEntities`, the parts that entities are cut into; elements belong to these.
-pub fn partitioned_entities(cursor: &mut Cursor, found: &mut Found) -> Result<(), MeshError> {
+pub fn partitioned_entities(cursor: &mut Cursor, found: &mut GmshContents) -> Result<(), MeshError> {
     cursor.begin_numbers()?;
     cursor.size("the number of partitions")?;
     let ghosts = cursor.size("the number of ghost entities")?;
-    let ghosts = cursor.fitting(ghosts, Record { ints: 2, ..Record::default() }, "ghost entities")?;
+    let ghosts = cursor.fitting(ghosts, RecordSize { ints: 2, ..RecordSize::default() }, "ghost entities")?;
     for _ in 0..ghosts {
         cursor.int("the tag of a ghost entity")?;
         cursor.int("the partition of a ghost entity")?;
@@ -25,13 +25,13 @@ pub fn partitioned_entities(cursor: &mut Cursor, found: &mut Found) -> Result<()
     cursor.keyword("$EndPartitionedEntities")
 }
 
-fn list(cursor: &mut Cursor, found: &mut Found, partitioned: bool) -> Result<(), MeshError> {
+fn list(cursor: &mut Cursor, found: &mut GmshContents, partitioned: bool) -> Result<(), MeshError> {
     let mut counts = [0; 4];
     for count in &mut counts {
         *count = cursor.size("the number of entities of a dimension")?;
     }
     for (dimension, count) in counts.into_iter().enumerate() {
-        let record = Record { ints: 1, sizes: 1, doubles: 3 };
+        let record = RecordSize { ints: 1, sizes: 1, doubles: 3 };
         for _ in 0..cursor.fitting(count, record, "entities")? {
             let tag = cursor.int("the tag of an entity")?;
             if partitioned {
@@ -57,6 +57,6 @@ fn list(cursor: &mut Cursor, found: &mut Found, partitioned: bool) -> Result<(),
 /// Reads a count and as many numbers.
 fn numbers(cursor: &mut Cursor, what: &str) -> Result<Vec<i64>, MeshError> {
     let count = cursor.size(what)?;
-    let count = cursor.fitting(count, Record { ints: 1, ..Record::default() }, what)?;
+    let count = cursor.fitting(count, RecordSize { ints: 1, ..RecordSize::default() }, what)?;
     (0..count).map(|_| cursor.int(what)).collect()
 }

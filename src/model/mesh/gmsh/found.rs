@@ -4,12 +4,12 @@ use crate::model::mesh::data::error::{MeshError, MeshPlace};
 use crate::model::mesh::data::label_index::LabelIndex;
 use crate::model::mesh::data::mesh_data::MeshElements;
 use crate::model::mesh::data::unread::Unread;
-use crate::model::mesh::gmsh::cursor::{Cursor, Record};
+use crate::model::mesh::gmsh::cursor::{Cursor, RecordSize};
 use std::collections::HashMap;
 
 /// Elements one after another in the file that belong to the same groups.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ElementRun {
+pub struct GroupRun {
     /// Dimension of the geometrical entity (4.1) or the physical group (2.2).
     pub dimension: usize,
     /// Tag of the entity (4.1) or of the group (2.2; 0 for none).
@@ -22,7 +22,7 @@ pub struct ElementRun {
 
 /// What has been read so far.
 #[derive(Debug, Default)]
-pub struct Found {
+pub struct GmshContents {
     /// Names of physical groups by dimension and tag.
     pub names: HashMap<(usize, i64), String>,
     /// Physical groups of each entity by dimension and tag; none before `$Entities` is read.
@@ -36,19 +36,19 @@ pub struct Found {
     /// Elements of all dimensions.
     pub elements: MeshElements,
     /// Their groups; every element is in one run, in order.
-    pub runs: Vec<ElementRun>,
+    pub runs: Vec<GroupRun>,
     /// Whether `$Elements` has been read.
     pub has_elements: bool,
     /// Sections that are not read.
     pub unread: Unread,
 }
 
-impl Found {
+impl GmshContents {
     /// Makes room for nodes, as many as the rest of the file can hold.
     ///
     /// # Errors
     /// It is too short for so many.
-    pub fn reserve_nodes(&mut self, cursor: &Cursor, count: u64, record: Record) -> Result<usize, MeshError> {
+    pub fn reserve_nodes(&mut self, cursor: &Cursor, count: u64, record: RecordSize) -> Result<usize, MeshError> {
         let count = cursor.fitting(count, record, "nodes")?;
         self.node_labels.reserve(count);
         self.coordinates.reserve(count);
@@ -75,7 +75,7 @@ impl Found {
             Some(run) if (run.dimension, run.tag) == (dimension, tag) => run.count += count,
             _ => {
                 let first = self.runs.last().map_or(0, |run| run.first + run.count);
-                self.runs.push(ElementRun { dimension, tag, first, count });
+                self.runs.push(GroupRun { dimension, tag, first, count });
             }
         }
     }

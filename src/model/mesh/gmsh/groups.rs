@@ -4,8 +4,8 @@ use crate::model::mesh::data::draft::MeshDraft;
 use crate::model::mesh::data::error::{MeshError, MeshPlace};
 use crate::model::mesh::data::label_index::LabelIndex;
 use crate::model::mesh::data::member_budget::MemberBudget;
-use crate::model::mesh::data::mesh_data::{Mesh, MeshElements};
-use crate::model::mesh::gmsh::found::{ElementRun, Found, repeated};
+use crate::model::mesh::data::mesh_data::{MeshData, MeshElements};
+use crate::model::mesh::gmsh::found::{GmshContents, GroupRun, repeated};
 use indexmap::IndexMap;
 use std::collections::HashMap;
 
@@ -19,7 +19,7 @@ const MEMBERS_OF_RUN: usize = 16;
 ///
 /// # Errors
 /// An element is given twice, or there is none, or groups have too many members.
-pub fn mesh(mut found: Found, may_repeat: bool, bytes: usize) -> Result<Mesh, MeshError> {
+pub fn mesh(mut found: GmshContents, may_repeat: bool, bytes: usize) -> Result<MeshData, MeshError> {
     if found.elements.is_empty() {
         return Err(MeshError::new(MeshPlace::File, "there is no element"));
     }
@@ -73,8 +73,11 @@ fn merge_repeated(all: MeshElements) -> (MeshElements, Vec<u32>, usize) {
 }
 
 /// The runs of elements of each group, by its name.
-fn runs_by_group(found: &Found, budget: &mut MemberBudget) -> Result<IndexMap<String, Vec<ElementRun>>, MeshError> {
-    let mut groups: IndexMap<(usize, i64), Vec<ElementRun>> = IndexMap::new();
+fn runs_by_group(
+    found: &GmshContents,
+    budget: &mut MemberBudget,
+) -> Result<IndexMap<String, Vec<GroupRun>>, MeshError> {
+    let mut groups: IndexMap<(usize, i64), Vec<GroupRun>> = IndexMap::new();
     for run in &found.runs {
         match &found.entities {
             Some(entities) => {
@@ -90,7 +93,7 @@ fn runs_by_group(found: &Found, budget: &mut MemberBudget) -> Result<IndexMap<St
             None => {}
         }
     }
-    let mut by_name: IndexMap<String, Vec<ElementRun>> = IndexMap::new();
+    let mut by_name: IndexMap<String, Vec<GroupRun>> = IndexMap::new();
     for ((dimension, tag), runs) in groups {
         let entity = ENTITIES.get(dimension).copied().unwrap_or_default();
         let name = found.names.get(&(dimension, tag)).cloned().unwrap_or_else(|| format!("{entity}_group_{tag}"));
@@ -100,7 +103,7 @@ fn runs_by_group(found: &Found, budget: &mut MemberBudget) -> Result<IndexMap<St
 }
 
 /// The elements of runs, ascending.
-fn members(runs: &[ElementRun], places: &[u32], budget: &mut MemberBudget) -> Result<Vec<u32>, MeshError> {
+fn members(runs: &[GroupRun], places: &[u32], budget: &mut MemberBudget) -> Result<Vec<u32>, MeshError> {
     budget.take(runs.iter().map(|run| run.count).sum(), MeshPlace::File)?;
     let mut members: Vec<u32> = runs
         .iter()

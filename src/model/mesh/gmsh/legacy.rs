@@ -2,17 +2,17 @@
 
 use crate::model::mesh::data::element_shape::ElementShape;
 use crate::model::mesh::data::error::{MeshError, MeshPlace};
-use crate::model::mesh::gmsh::cursor::{Cursor, Record};
-use crate::model::mesh::gmsh::element_record::{ElementKind, TagType, read_element};
-use crate::model::mesh::gmsh::found::Found;
+use crate::model::mesh::gmsh::cursor::{Cursor, RecordSize};
+use crate::model::mesh::gmsh::element_record::{ReadKind, TagType, read_element};
+use crate::model::mesh::gmsh::found::GmshContents;
 
-const NODE: Record = Record { ints: 1, sizes: 0, doubles: 3 };
+const NODE: RecordSize = RecordSize { ints: 1, sizes: 0, doubles: 3 };
 
 /// Tags of an element at most; more are no file of gmsh.
 const MOST_TAGS: u64 = 1_000_000;
 
 /// Reads the nodes: `tag x y z` each.
-pub fn nodes(cursor: &mut Cursor, found: &mut Found) -> Result<(), MeshError> {
+pub fn nodes(cursor: &mut Cursor, found: &mut GmshContents) -> Result<(), MeshError> {
     let count = cursor.words.natural("the number of nodes")?;
     cursor.begin_numbers()?;
     let count = found.reserve_nodes(cursor, count, NODE)?;
@@ -28,10 +28,10 @@ pub fn nodes(cursor: &mut Cursor, found: &mut Found) -> Result<(), MeshError> {
 }
 
 /// Reads the elements. In text every element has its header, `tag type tags`; in binary a block of elements has one.
-pub fn elements(cursor: &mut Cursor, found: &mut Found) -> Result<(), MeshError> {
+pub fn elements(cursor: &mut Cursor, found: &mut GmshContents) -> Result<(), MeshError> {
     let count = cursor.words.natural("the number of elements")?;
     cursor.begin_numbers()?;
-    let count = cursor.fitting(count, Record { ints: 2, ..Record::default() }, "elements")?;
+    let count = cursor.fitting(count, RecordSize { ints: 2, ..RecordSize::default() }, "elements")?;
     let mut read = 0;
     while read < count {
         if cursor.is_binary() {
@@ -47,14 +47,14 @@ pub fn elements(cursor: &mut Cursor, found: &mut Found) -> Result<(), MeshError>
     Ok(())
 }
 
-fn kind(cursor: &mut Cursor) -> Result<ElementKind, MeshError> {
+fn kind(cursor: &mut Cursor) -> Result<ReadKind, MeshError> {
     let place = cursor.place();
     let number = cursor.int("the type of an element")?;
-    ElementKind::new(number, place)
+    ReadKind::new(number, place)
 }
 
 /// Reads a block of a binary file and counts its elements.
-fn block(cursor: &mut Cursor, found: &mut Found, left: usize) -> Result<usize, MeshError> {
+fn block(cursor: &mut Cursor, found: &mut GmshContents, left: usize) -> Result<usize, MeshError> {
     let place = cursor.place();
     let kind = kind(cursor)?;
     let count = cursor.natural_int("the number of elements in a block")?;
@@ -62,7 +62,7 @@ fn block(cursor: &mut Cursor, found: &mut Found, left: usize) -> Result<usize, M
     if count == 0 || count > left as u64 {
         return Err(MeshError::expected(place, format_args!("a block of 1 to {left} elements"), count));
     }
-    let record = Record { ints: 1 + kind.shape.nodes(), ..Record::default() };
+    let record = RecordSize { ints: 1 + kind.shape.nodes(), ..RecordSize::default() };
     let count = cursor.fitting(count, record, "elements")?;
     for _ in 0..count {
         let label = cursor.natural_int("the tag of an element")?;
@@ -72,7 +72,13 @@ fn block(cursor: &mut Cursor, found: &mut Found, left: usize) -> Result<usize, M
 }
 
 /// Reads an element's tags, of which the first is its physical group, and its nodes.
-fn element(cursor: &mut Cursor, found: &mut Found, kind: ElementKind, label: u64, tags: u64) -> Result<(), MeshError> {
+fn element(
+    cursor: &mut Cursor,
+    found: &mut GmshContents,
+    kind: ReadKind,
+    label: u64,
+    tags: u64,
+) -> Result<(), MeshError> {
     if tags > MOST_TAGS {
         return Err(too_many_tags(cursor.place(), kind.shape, tags));
     }

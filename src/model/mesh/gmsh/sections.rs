@@ -2,10 +2,10 @@
 
 use crate::model::input::limits::MAX_NAME_BYTES;
 use crate::model::mesh::data::error::{MeshError, MeshPlace, quoted};
-use crate::model::mesh::data::mesh_data::Mesh;
+use crate::model::mesh::data::mesh_data::MeshData;
 use crate::model::mesh::gmsh::binary::BinaryLayout;
 use crate::model::mesh::gmsh::cursor::Cursor;
-use crate::model::mesh::gmsh::found::Found;
+use crate::model::mesh::gmsh::found::GmshContents;
 use crate::model::mesh::gmsh::{blocks, entities, groups, legacy};
 
 /// The two families of versions.
@@ -21,9 +21,9 @@ enum Version {
 ///
 /// # Errors
 /// The first mistake, with its line in a text file, or its byte in a binary one.
-pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
+pub fn read(bytes: &[u8]) -> Result<MeshData, MeshError> {
     let mut cursor = Cursor::new(bytes);
-    let mut found = Found::default();
+    let mut found = GmshContents::default();
     let version = first_section(&mut cursor, &mut found)?;
     while let Some(name) = section_name(&mut cursor)? {
         let place = cursor.place();
@@ -82,7 +82,7 @@ fn section_name<'a>(cursor: &mut Cursor<'a>) -> Result<Option<&'a [u8]>, MeshErr
 }
 
 /// Reads up to the end of `$MeshFormat`, before which comments may stand.
-fn first_section(cursor: &mut Cursor, found: &mut Found) -> Result<Version, MeshError> {
+fn first_section(cursor: &mut Cursor, found: &mut GmshContents) -> Result<Version, MeshError> {
     loop {
         match section_name(cursor)? {
             Some(b"MeshFormat") => return mesh_format(cursor),
@@ -142,7 +142,7 @@ fn layout(cursor: &mut Cursor, version: Version, size: u64) -> Result<BinaryLayo
 }
 
 /// Passes over a section, which is put on the list of what is not read.
-fn skip(cursor: &mut Cursor, name: &[u8], found: &mut Found) -> Result<(), MeshError> {
+fn skip(cursor: &mut Cursor, name: &[u8], found: &mut GmshContents) -> Result<(), MeshError> {
     let place = cursor.place();
     let end = [b"$End", name].concat();
     let rest = cursor.words.rest();
@@ -158,7 +158,7 @@ fn skip(cursor: &mut Cursor, name: &[u8], found: &mut Found) -> Result<(), MeshE
 }
 
 /// Reads the names of physical groups, which are text in every file.
-fn physical_names(cursor: &mut Cursor, found: &mut Found) -> Result<(), MeshError> {
+fn physical_names(cursor: &mut Cursor, found: &mut GmshContents) -> Result<(), MeshError> {
     let words = &mut cursor.words;
     let count = words.natural("the number of physical names")?;
     for _ in 0..count {
