@@ -4,6 +4,7 @@
 
 mod backup;
 mod check;
+mod convert;
 mod health;
 mod openapi;
 mod options;
@@ -15,7 +16,6 @@ mod study;
 mod sweep;
 mod token;
 mod verify;
-pub(crate) mod verify_picture;
 mod work;
 
 use crate::command::options::input::MistakeFormat;
@@ -42,6 +42,7 @@ enum Command {
     Study(study::Arguments),
     Sweep(sweep::Arguments),
     Check(check::Arguments),
+    Convert(convert::Arguments),
     Scenes(scenes::Arguments),
     Verify(verify::Arguments),
     Health(health::Arguments),
@@ -66,6 +67,7 @@ fn run_command(command: Command, matches: &ArgMatches) -> Outcome {
         Command::Study(arguments) => arguments.bounds.within(|| study::run(&arguments)),
         Command::Sweep(arguments) => arguments.bounds.within(|| sweep::run(&arguments)),
         Command::Check(arguments) => arguments.bounds.within(|| check::run(&arguments)),
+        Command::Convert(arguments) => convert::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Health(arguments) => health::run(&arguments),

@@ -2,11 +2,13 @@
 //!
 //! [`request`], [`study`](request::study) and [`sweep`](request::sweep) have the types of the contract, [`mod@decode`] reads
 //! them from JSON text and reports the place of each mistake, [`runs`] makes the runs of a sweep, [`mod@check`] checks decoded
-//! requests (unknown names, zero lengths, penetration). Nothing here knows how a path is traced. [`read`] decodes and checks.
+//! requests (unknown names, zero lengths, penetration). [`mesh`] reads mesh files and makes models of them. Nothing here
+//! knows how a path is traced. [`read`] decodes and checks.
 
 pub mod check;
 pub mod decode;
 pub mod input;
+pub mod mesh;
 pub mod request;
 pub mod run_mistakes;
 pub mod runs;

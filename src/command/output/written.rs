@@ -3,7 +3,7 @@
 use crate::command::output::outcome::{Failure, say};
 use std::path::Path;
 
-/// Whether a path is `-`, which stands for standard output.
+/// Whether a path is `-`, which stands for standard output, or standard input where something is read.
 pub fn is_standard_output(place: &Path) -> bool {
     place.as_os_str() == "-"
 }

@@ -1,10 +1,11 @@
 //! `arcslip verify`: solves every scene with a known solution and judges the result.
 
+mod picture;
+
 use crate::check::cases::cases;
 use crate::check::verify::case::{Case, CaseRow};
 use crate::command::output::outcome::{Failure, Outcome, say};
 use crate::command::output::written::{is_standard_output, one_on_standard_output, write};
-use crate::command::verify_picture;
 use crate::model::input::names::suggestion_of_all;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -54,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         write(file, &(serde_json::to_string_pretty(&rows).map_err(Failure::other)? + "\n"))?;
     }
     if let Some(file) = &arguments.plot {
-        write(file, &verify_picture::svg(&rows).map_err(Failure::other)?)?;
+        write(file, &picture::svg(&rows).map_err(Failure::other)?)?;
     }
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::from(crate::command::output::outcome::FAILED) })
 }
