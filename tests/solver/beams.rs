@@ -322,7 +322,8 @@ fn a_hinge_that_makes_a_mechanism_is_named() {
         ],
         "stages": [{"name": "push", "forces": {"tip": [0, 1]}}],
     }});
-    let told = Scene::new(&request(&value.to_string())).err().expect("a mechanism").to_string();
+    let Err(mistakes) = Scene::new(&request(&value.to_string())) else { panic!("a mechanism is refused") };
+    let told = mistakes.to_string();
     for part in ["model.elements[0]", "released at \"clamp\" can turn", "leave the release out"] {
         assert!(told.contains(part), "{told}");
     }
