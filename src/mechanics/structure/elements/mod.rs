@@ -2,6 +2,7 @@
 
 pub mod bar;
 pub mod beam;
+pub mod materials;
 pub mod rotational_spring;
 pub mod space_beam;
 pub mod spring;
