@@ -123,7 +123,7 @@ where
         let is_plane_stress = matches!(idealisation, Idealisation::PlaneStress { .. });
         let body = Body {
             geometry: ReferenceGeometry::new(positions, idealisation),
-            shape: <[[f64; D]; N]>::shape(),
+            shape: <[[f64; D]; N]>::shape(idealisation),
             law: ConstitutiveLaw { material, is_plane_stress },
         };
         for (point, shape) in body.shape.iter().enumerate() {

@@ -1,15 +1,24 @@
-//! Mean dilatation: the material's energy with the mean volume ratio of the element.
+//! Mean dilatation: the material's energy with the volume ratio averaged over the element.
 //!
 //! ```text
-//! W_e = Σ_q V_q W(F̂_q),     F̂_q = (J̄/J_q)^(1/3) F_q,     J̄ = Σ_q V_q J_q / Σ_q V_q
+//! W_e = Σ_q V_q W(F̂_q),     F̂_q = (J̄/J_q)^a F_q,     J̄ = Σ_q V_q J_q / Σ_q V_q
 //! ```
 //!
-//! (J. C. Simo, R. L. Taylor, K. S. Pister, Comput. Methods Appl. Mech. Eng. 51 (1985) 177,
-//! doi:10.1016/0045-7825(85)90033-7; as an energy: B. Moran, M. Ortiz, C. F. Shih, Int. J. Numer. Methods Eng. 29 (1990)
-//! 483, doi:10.1002/nme.1620290304.) The pressure is constant in the element, which quadratic displacements bear stably.
-//! For a material of small strains the dilatation `tr h` takes the place of `J`: `ĥ = h + ⅓ (mean(tr h) - tr h) 1`.
+//! With `a = ⅓` the volume ratio of `F̂` is the mean `J̄` (J. C. Simo, R. L. Taylor, K. S. Pister, Comput. Methods Appl.
+//! Mech. Eng. 51 (1985) 177, doi:10.1016/0045-7825(85)90033-7; as an energy: B. Moran, M. Ortiz, C. F. Shih, Int. J. Numer.
+//! Methods Eng. 29 (1990) 483, doi:10.1002/nme.1620290304), and the pressure is constant in the element, which quadratic
+//! displacements bear stably. But then the quadratic displacements `2 (b·x) x - (x·x) b`, whose deviatoric strain is 0, have
+//! no energy in a single element in space: three modes, one around an axis. Therefore
 //!
-//! With `Ψ(F, J̄) = W((J̄/J)^(1/3) F)` and the pressure `p = Σ V_q ∂Ψ/∂J̄ / Σ V_q`, nodal forces and tangent are
+//! ```text
+//! a = ⅓ (1 - √(G/κ)),     0 where κ < G:
+//! ```
+//!
+//! the inhomogeneous part of the dilatation is resisted with the modulus `(1 - 3a)² κ = G`, which locks nothing and leaves no
+//! mode without energy; in a compressible material the mend vanishes. For a material of small strains the dilatation `tr h`
+//! takes the place of `J`: `ĥ = h + a (mean(tr h) - tr h) 1`.
+//!
+//! With `Ψ(F, J̄) = W((J̄/J)^a F)` and the pressure `p = Σ V_q ∂Ψ/∂J̄ / Σ V_q`, nodal forces and tangent are
 //!
 //! ```text
 //! f = Σ_q V_q (Ψ_F + p ∂J/∂F) : ∂F/∂u
@@ -36,6 +45,8 @@ pub struct DilatedPoint<'a> {
     gradient: Tensor2,
     /// `J̄ - 1`, or the mean of `tr h`.
     mean_change: f64,
+    /// The exponent `a`.
+    exponent: f64,
     /// `ĥ = F̂ - 1`.
     mended: Tensor2,
 }
@@ -70,15 +81,17 @@ pub fn dilatation(material: &dyn Material, gradient: &Tensor2) -> f64 {
 
 impl<'a> DilatedPoint<'a> {
     /// A point where `det F > 0`, in an element of mean dilatation `mean_change > -1`.
-    pub fn new(material: &'a dyn Material, gradient: &Tensor2, mean_change: f64) -> Self {
+    fn new(material: &'a dyn Material, gradient: &Tensor2, mean_change: f64) -> Self {
+        let moduli = material.moduli();
+        let exponent = (1.0 - (moduli.shear / moduli.bulk().max(moduli.shear)).sqrt()) / 3.0;
         let own = dilatation(material, gradient);
         let mended = if material.is_linear() {
-            sum(gradient, (mean_change - own) / 3.0, &IDENTITY)
+            sum(gradient, exponent * (mean_change - own), &IDENTITY)
         } else {
-            let excess = ((mean_change.ln_1p() - own.ln_1p()) / 3.0).exp_m1();
+            let excess = (exponent * (mean_change.ln_1p() - own.ln_1p())).exp_m1();
             sum(gradient, excess, &sum(gradient, 1.0, &IDENTITY))
         };
-        Self { material, gradient: *gradient, mean_change, mended }
+        Self { material, gradient: *gradient, mean_change, exponent, mended }
     }
 
     /// Energy `Ψ`.
@@ -95,17 +108,17 @@ impl<'a> DilatedPoint<'a> {
     pub fn stress(&self) -> DilatedStress {
         let stress = self.material.stress(&self.mended);
         if self.material.is_linear() {
-            let mean = trace(&stress) / 3.0;
+            let mean = self.exponent * trace(&stress);
             return DilatedStress { stress: sum(&stress, -mean, &IDENTITY), pressure: mean, volume_slope: IDENTITY };
         }
         let deformation = sum(&self.gradient, 1.0, &IDENTITY);
         let volume = 1.0 + volume_change(&self.gradient);
         let volume_slope = self.volume_slope();
-        let scale = ((1.0 + self.mean_change) / volume).cbrt();
+        let scale = ((1.0 + self.mean_change) / volume).powf(self.exponent);
         let work = contraction(&stress, &deformation);
         DilatedStress {
-            stress: scaled(scale, &sum(&stress, -work / (3.0 * volume), &volume_slope)),
-            pressure: scale * work / (3.0 * (1.0 + self.mean_change)),
+            stress: scaled(scale, &sum(&stress, -self.exponent * work / volume, &volume_slope)),
+            pressure: self.exponent * scale * work / (1.0 + self.mean_change),
             volume_slope,
         }
     }
@@ -114,46 +127,47 @@ impl<'a> DilatedPoint<'a> {
     pub fn tangent(&self, pressure: f64) -> DilatedTangent {
         let tangent = self.material.tangent(&self.mended);
         if self.material.is_linear() {
-            return Self::small_tangent(tangent);
+            return self.small_tangent(tangent);
         }
         let deformation = sum(&self.gradient, 1.0, &IDENTITY);
         let (volume, mean) = (1.0 + volume_change(&self.gradient), 1.0 + self.mean_change);
         let inverse = scaled(1.0 / volume, &cofactor(&deformation));
-        let scale = (mean / volume).cbrt();
+        let exponent = self.exponent;
+        let scale = (mean / volume).powf(exponent);
         let stress = self.material.stress(&self.mended);
         let work = contraction(&stress, &deformation);
         let radial = applied(&tangent, &flat(&deformation));
         let stiffness = contraction(&unflat(&radial), &deformation);
         let (flat_inverse, flat_stress) = (flat(&inverse), flat(&stress));
-        // `θ² Πᵀ Â Π` and what follows from the second derivative of `F̂`, with `Π = 1 - ⅓ F ⊗ F⁻ᵀ`.
+        // `θ² Πᵀ Â Π` and what follows from the second derivative of `F̂`, with `Π = 1 - a F ⊗ F⁻ᵀ`.
         let mut whole = tangent.map(|row| row.map(|value| scale * scale * value));
         let coupled: Flat =
-            std::array::from_fn(|place| -scale / 3.0 * (scale * radial[place] + flat_stress[place]));
+            std::array::from_fn(|place| -exponent * scale * (scale * radial[place] + flat_stress[place]));
         add_dyad(&mut whole, 1.0, &coupled, &flat_inverse);
         add_dyad(&mut whole, 1.0, &flat_inverse, &coupled);
-        let dyad = scale / 9.0 * (scale * stiffness + work) + pressure * volume;
+        let dyad = exponent * exponent * scale * (scale * stiffness + work) + pressure * volume;
         add_dyad(&mut whole, dyad, &flat_inverse, &flat_inverse);
-        add_crossed(&mut whole, scale / 3.0 * work - pressure * volume, &inverse, &inverse);
+        add_crossed(&mut whole, exponent * scale * work - pressure * volume, &inverse, &inverse);
         let mixed = sum(&scaled(scale, &unflat(&radial)), 1.0, &stress);
-        let mixed = sum(&mixed, -(scale * stiffness + work) / 3.0, &inverse);
+        let mixed = sum(&mixed, -exponent * (scale * stiffness + work), &inverse);
         DilatedTangent {
             tangent: whole,
-            mixed: scaled(scale / (3.0 * mean), &mixed),
-            bulk: scale * (scale * stiffness - 2.0 * work) / (9.0 * mean * mean),
+            mixed: scaled(exponent * scale / mean, &mixed),
+            bulk: exponent * scale * (exponent * scale * stiffness + (exponent - 1.0) * work) / (mean * mean),
         }
     }
 
     /// The derivatives of second order for small strains.
-    fn small_tangent(mut tangent: Tensor4) -> DilatedTangent {
-        let identity = flat(&IDENTITY);
+    fn small_tangent(&self, mut tangent: Tensor4) -> DilatedTangent {
+        let (identity, exponent) = (flat(&IDENTITY), self.exponent);
         let radial = applied(&tangent, &identity);
         let stiffness = trace(&unflat(&radial));
-        let coupled: Flat = std::array::from_fn(|place| -radial[place] / 3.0);
+        let coupled: Flat = std::array::from_fn(|place| -exponent * radial[place]);
         add_dyad(&mut tangent, 1.0, &coupled, &identity);
         add_dyad(&mut tangent, 1.0, &identity, &coupled);
-        add_dyad(&mut tangent, stiffness / 9.0, &identity, &identity);
-        let mixed = sum(&scaled(1.0 / 3.0, &unflat(&radial)), -stiffness / 9.0, &IDENTITY);
-        DilatedTangent { tangent, mixed, bulk: stiffness / 9.0 }
+        add_dyad(&mut tangent, exponent * exponent * stiffness, &identity, &identity);
+        let mixed = sum(&scaled(exponent, &unflat(&radial)), -exponent * exponent * stiffness, &IDENTITY);
+        DilatedTangent { tangent, mixed, bulk: exponent * exponent * stiffness }
     }
 }
 

@@ -6,7 +6,7 @@
 
 use crate::mechanics::structure::elements::materials::tensor::{IDENTITY, cofactor, determinant};
 use crate::mechanics::structure::elements::solid::shapes::kind::{Idealisation, SolidKind};
-use crate::mechanics::structure::elements::solid::shapes::quadrature::{centroid, gauss, interior};
+use crate::mechanics::structure::elements::solid::shapes::quadrature::{centroid, gauss, interior, triangle_of_degree_4};
 use crate::mechanics::structure::elements::solid::shapes::shape_functions::{
     HEXAHEDRON, QUADRILATERAL, ShapePoint, of_cube, of_simplex,
 };
@@ -118,26 +118,32 @@ pub trait NodalPositions<const N: usize, const D: usize> {
     const KIND: SolidKind;
 
     /// The shape functions at the quadrature points.
-    fn shape() -> &'static [ShapePoint<N, D>];
+    fn shape(idealisation: Idealisation) -> &'static [ShapePoint<N, D>];
 }
 
-/// Shape functions at the points of a rule, computed once.
+/// Shape functions at the points of a rule, and of another around an axis, computed once.
 macro_rules! kind {
-    ($nodes:literal, $dimension:literal, $kind:ident, $rule:expr, $functions:expr) => {
+    ($nodes:literal, $dimension:literal, $kind:ident, $rule:expr, $around_axis:expr, $functions:expr) => {
         impl NodalPositions<$nodes, $dimension> for [[f64; $dimension]; $nodes] {
             const KIND: SolidKind = SolidKind::$kind;
 
-            fn shape() -> &'static [ShapePoint<$nodes, $dimension>] {
+            fn shape(idealisation: Idealisation) -> &'static [ShapePoint<$nodes, $dimension>] {
                 static SHAPE: LazyLock<Vec<ShapePoint<$nodes, $dimension>>> =
                     LazyLock::new(|| $rule.into_iter().map($functions).collect());
-                &SHAPE
+                static AROUND_AXIS: LazyLock<Vec<ShapePoint<$nodes, $dimension>>> =
+                    LazyLock::new(|| $around_axis.into_iter().map($functions).collect());
+                if idealisation == Idealisation::Axisymmetric { &AROUND_AXIS } else { &SHAPE }
             }
         }
     };
+    ($nodes:literal, $dimension:literal, $kind:ident, $rule:expr, $functions:expr) => {
+        kind!($nodes, $dimension, $kind, $rule, $rule, $functions);
+    };
 }
 
-kind!(3, 2, Triangle3, centroid::<2>(), of_simplex);
-kind!(6, 2, Triangle6, interior::<2>(), of_simplex);
+// Around an axis the strain varies more: with the fewest points a cross-section could turn without resistance.
+kind!(3, 2, Triangle3, centroid::<2>(), interior::<2>(), of_simplex);
+kind!(6, 2, Triangle6, interior::<2>(), triangle_of_degree_4(), of_simplex);
 kind!(4, 2, Quadrilateral4, gauss::<2>(2), |point| of_cube(&QUADRILATERAL, point));
 kind!(8, 2, Quadrilateral8, gauss::<2>(3), |point| of_cube(&QUADRILATERAL, point));
 kind!(4, 3, Tetrahedron4, centroid::<3>(), of_simplex);

@@ -3,8 +3,8 @@
 mod bending;
 //mod bodies_of_revolution;
 mod consistency;
-//mod cook;
-//mod loads;
+mod cook;
+mod loads;
 mod meshes;
 mod patches;
 mod stability;

@@ -12,7 +12,8 @@ use std::sync::Arc;
 /// A homogeneous displacement gradient that the idealisation allows.
 pub fn homogeneous(idealisation: Idealisation) -> Tensor2 {
     match idealisation {
-        Idealisation::Axisymmetric => [[0.2, 0.0, 0.0], [0.3, -0.15, 0.0], [0.0, 0.0, 0.2]],
+        // Around an axis a homogeneous shear is not in equilibrium without body forces.
+        Idealisation::Axisymmetric => [[0.2, 0.0, 0.0], [0.0, -0.15, 0.0], [0.0, 0.0, 0.2]],
         Idealisation::Space => [[0.2, -0.1, 0.15], [0.3, -0.15, 0.1], [-0.2, 0.05, 0.1]],
         _ => [[0.2, -0.1, 0.0], [0.3, -0.15, 0.0], [0.0, 0.0, 0.0]],
     }
@@ -96,7 +97,8 @@ fn the_stretch_out_of_the_plane_of_incompressible_plane_stress() {
         let shear = material.moduli().shear;
         let solids = Solids::new(&mesh, idealisation, &material, None);
         let displacement = moved(&mesh, &[[0.5, 0.0, 0.0], [0.0, -0.1, 0.0], [0.0; 3]]);
-        let Some(Resultants::Stress { stress, .. }) = solids.elements[0].resultants(&displacement) else { panic!() };
+        let own = solids.own(solids.elements[0].as_ref(), &displacement);
+        let Some(Resultants::Stress { stress, .. }) = solids.elements[0].resultants(&own) else { panic!("stress") };
         let exact = shear * (2.25 - 1.0 / (1.5_f64 * 0.9).powi(2));
         (stress[0] / exact - 1.0).abs()
     };

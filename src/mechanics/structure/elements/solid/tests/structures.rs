@@ -74,7 +74,7 @@ impl Solids {
 
     /// The degrees of freedom of an element.
     pub fn freedoms_of<'a>(&'a self, element: &'a dyn FiniteElement) -> impl Iterator<Item = usize> + 'a {
-        element.nodes().iter().flat_map(|node| (0..self.dimension).map(move |axis| node * self.dimension + axis))
+        element.nodes().iter().flat_map(move |node| (0..self.dimension).map(move |axis| node * self.dimension + axis))
     }
 
     pub fn own(&self, element: &dyn FiniteElement, values: &[f64]) -> Vec<f64> {
@@ -103,6 +103,17 @@ impl Solids {
             }
         }
         matrix
+    }
+
+    /// The tangent over some degrees of freedom, row by row.
+    pub fn dense_stiffness(&self, displacement: &[f64], free: &[usize]) -> Vec<f64> {
+        let matrix = self.stiffness(displacement);
+        let entry = |row: usize, column: usize| {
+            let is_near = row.abs_diff(column) <= self.band;
+            if is_near { matrix.rows[row][column + self.band - row] } else { 0.0 }
+        };
+        let row_of = |row: &usize| -> Vec<f64> { free.iter().map(|column| entry(*row, *column)).collect() };
+        free.iter().flat_map(row_of).collect()
     }
 
     /// Equilibrium under external forces that grow in steps; `held`: degrees of freedom and their displacements.
