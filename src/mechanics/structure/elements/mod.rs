@@ -2,7 +2,9 @@
 
 pub mod bar;
 pub mod beam;
+pub mod materials;
 pub mod rotational_spring;
+pub mod solid;
 pub mod space_beam;
 pub mod spring;
 
@@ -120,6 +122,13 @@ pub enum Resultants {
     SpaceEnds([SpaceBeamEnd; 2]),
     /// Of a rotational spring on the rotation of its first node relative to the second, or to the ground.
     Moment(f64),
+    /// The mean Cauchy stress in a solid over its deformed volume, per undeformed area where strains count as small.
+    Stress {
+        /// Components `xx`, `yy`, `zz`, `xy`, `yz`, `xz`; in a body of revolution `zz` is around the axis.
+        stress: [f64; 6],
+        /// Equivalent stress of von Mises.
+        von_mises: f64,
+    },
 }
 
 /// The force in a beam at one of its ends, in the axes of the cross-section there: `t` its normal, along the beam, and
