@@ -142,9 +142,10 @@ pub use check::measure::{Errors, HistoryError, Largest, Maxima};
 pub use continuation::path::checkpoint::CheckpointError;
 pub use mechanics::structure::elements::bar::Strain;
 pub use model::request::{
-    Analysis, ArcLength, Certificate, Component, Contact, ContactRange, DisplacementBound, Element, ElementReference,
-    Events, Explore, ForceRange, JobRequest, LoadSign, Method, Model, Mpec, Obstacle, Record, RecordedContact,
-    RecordedContacts, RecordedElements, RecordedSupports, Regularised, Side, Stage, Units, Until,
+    Analysis, ArcLength, Certificate, Component, Contact, ContactRange, DisplacementBound, ElasticConstants, Element,
+    ElementReference, Events, Explore, ForceRange, JobRequest, LoadSign, LockingMend, Material, Method, Model, Mpec,
+    NamedSet, Obstacle, PlaneCondition, Record, RecordedContact, RecordedContacts, RecordedElements, RecordedSupports,
+    Regularised, Side, Solid, SolidKind, Stage, Surface, Units, Until,
 };
 pub use model::{InputError, InputErrors, read};
 pub use resources::cancel::CancelFlag;

@@ -12,6 +12,8 @@ pub mod mesh;
 pub mod request;
 pub mod run_mistakes;
 pub mod runs;
+pub(crate) mod solid_data;
+pub(crate) mod solid_faces;
 mod template;
 
 pub use input::error::{InputError, InputErrors};

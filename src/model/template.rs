@@ -77,14 +77,18 @@ impl Template {
         let JobRequest { model: other, analysis } = differing;
         let mut model = first.model.clone();
         for member in self.members.iter().filter(|member| member.of_model && !member.content.is_common()) {
-            let Model { name, units, dimension, nodes, supports, elements, obstacles, contacts, stages } = &other;
+            let Model { name, units, dimension, nodes, supports, elements, obstacles, contacts, stages, .. } = &other;
+            let Model { materials, surfaces, sets, .. } = &other;
             match member.name.as_str() {
                 "name" => model.name.clone_from(name),
                 "units" => model.units.clone_from(units),
                 "dimension" => model.dimension = *dimension,
                 "nodes" => model.nodes.clone_from(nodes),
                 "supports" => model.supports.clone_from(supports),
+                "materials" => model.materials.clone_from(materials),
                 "elements" => model.elements.clone_from(elements),
+                "surfaces" => model.surfaces.clone_from(surfaces),
+                "sets" => model.sets.clone_from(sets),
                 "obstacles" => model.obstacles.clone_from(obstacles),
                 "contacts" => model.contacts.clone_from(contacts),
                 "stages" => model.stages.clone_from(stages),

@@ -41,6 +41,7 @@ enum ForceColumns {
     Vector,
     Ends,
     Moment,
+    Stress,
 }
 
 #[derive(Debug, Clone)]
@@ -90,6 +91,11 @@ pub(crate) fn beam_forces(dimension: usize) -> &'static [&'static str] {
     if dimension == 2 { &BEAM_FORCES } else { &BEAM_FORCES_IN_SPACE }
 }
 
+/// Names of the components of a solid's stress, in the order of `ElementState::stress`.
+pub(crate) fn stress_components(dimension: usize) -> &'static [&'static str] {
+    if dimension == 2 { &["xx", "yy", "zz", "xy"] } else { &["xx", "yy", "zz", "xy", "yz", "xz"] }
+}
+
 /// What a beam's end has, by the dimension of the space.
 pub(crate) fn at_end(dimension: usize) -> &'static [&'static str] {
     if dimension == 2 { &AT_END } else { &AT_END_IN_SPACE }
@@ -130,6 +136,7 @@ impl Table {
                 Element::Spring { .. } => ForceColumns::Vector,
                 Element::Beam { .. } => ForceColumns::Ends,
                 Element::RotationalSpring { .. } => ForceColumns::Moment,
+                _ => ForceColumns::Stress,
             },
         };
         Self {
@@ -166,6 +173,11 @@ impl Table {
                     at_end(self.dimension).iter().map(move |what| format!("elements/{label}.{end}.{what}"))
                 })),
                 ForceColumns::Moment => names.push(format!("elements/{label}.moment")),
+                ForceColumns::Stress => {
+                    let components = stress_components(self.dimension).iter();
+                    names.extend(components.map(|component| format!("elements/{label}.stress.{component}")));
+                    names.push(format!("elements/{label}.von_mises"));
+                }
             }
         }
         for node in &self.supports {
@@ -243,6 +255,11 @@ impl Table {
                     }
                 }
                 ForceColumns::Moment => line.optional(state.and_then(|state| state.moment)),
+                ForceColumns::Stress => {
+                    let stress = state.and_then(|state| state.stress.as_deref());
+                    line.numbers(stress.unwrap_or_default(), stress_components(self.dimension).len());
+                    line.optional(state.and_then(|state| state.von_mises));
+                }
             }
         }
         for node in &self.supports {

@@ -117,6 +117,15 @@ pub struct ElementState {
     /// The spring acts on its first node with the opposite of this moment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moment: Option<f64>,
+    /// Of a solid: the mean Cauchy stress over its deformed volume (with a material of small strains, of the stress), tension
+    /// positive, in global axes: `xx`, `yy`, `zz`, `xy`, and in space `yz`, `xz`. In the plane `z` is the third direction, of a
+    /// body of revolution the one around its axis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "server", schema(value_type = Option<Vec<f64>>))]
+    pub stress: Option<SmallVec<[f64; 6]>>,
+    /// Of a solid: the equivalent stress of von Mises of `stress`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub von_mises: Option<f64>,
 }
 
 /// The force in a beam at one of its ends, in the axes of the deformed cross-section. In the plane: `t` along the beam,

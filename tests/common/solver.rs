@@ -182,6 +182,8 @@ fn increment(index: u64, run: u64) -> Increment {
             force: None,
             ends: None,
             moment: None,
+            stress: None,
+            von_mises: None,
         }],
         supports: [("pin".into(), vec![0.1 * along, -along])].into_iter().collect(),
         applied_forces: [along, 0.0].into_iter().collect(),

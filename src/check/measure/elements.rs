@@ -107,6 +107,7 @@ impl MeasuredElement {
                 let other = nodes.get(1).map(|name| index(name).ok_or(())).transpose().ok()?;
                 Some(Self::Spring { node: index(nodes.first()?)?, other, stiffness: [row(0), row(1), row(2)] })
             }
+            _ => None,
         }
     }
 

@@ -111,6 +111,8 @@ impl Make {
             forces: forces.iter().map(|(node, force)| ((*node).to_owned(), force.to_vec())).collect(),
             moments: IndexMap::new(),
             displacements: IndexMap::new(),
+            body_forces: IndexMap::new(),
+            tractions: IndexMap::new(),
             obstacle_motion: IndexMap::new(),
             until,
         });

@@ -29,6 +29,8 @@ pub(crate) fn element_rows(scene: &Scene, row: &RowSource<'_>) -> Vec<ElementSta
                 force: None,
                 ends: None,
                 moment: None,
+                stress: None,
+                von_mises: None,
             };
             match row.loading.structure.resultants(*place, &row.state.displacement) {
                 Some(Resultants::Axial(axial)) => state.axial_force = Some(axial * force),
@@ -52,6 +54,12 @@ pub(crate) fn element_rows(scene: &Scene, row: &RowSource<'_>) -> Vec<ElementSta
                     }));
                 }
                 Some(Resultants::Moment(moment)) => state.moment = Some(moment * force * length),
+                Some(Resultants::Stress { stress, von_mises }) => {
+                    let unit = force / length / length;
+                    state.stress =
+                        Some(stress[..if dimension == 2 { 4 } else { 6 }].iter().map(|value| value * unit).collect());
+                    state.von_mises = Some(von_mises * unit);
+                }
                 None => {}
             }
             state

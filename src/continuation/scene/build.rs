@@ -2,6 +2,7 @@
 
 use crate::continuation::scene::elements::ElementBuilder;
 use crate::continuation::scene::requested_contacts::Reported;
+use crate::continuation::scene::solid_loads;
 use crate::continuation::scene::stage_load::StageLoad;
 use crate::continuation::scene::tolerances::COINCIDENCE_TOLERANCE;
 use crate::mechanics::contact::coulomb::CoulombFriction;
@@ -270,7 +271,8 @@ pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scal
     budget::spend(structure.freedoms());
     let largest = |vectors: &IndexMap<String, Vec<f64>>| vectors.values().map(|v| norm(v)).fold(0.0_f64, f64::max);
     let largest_moment = stage.moments.values().fold(0.0_f64, |most, moment| most.max(moment.abs()));
-    let by_force = resistance / largest(&stage.forces).max(largest_moment / length);
+    let on_nodes = largest(&stage.forces).max(largest_moment / length);
+    let by_force = resistance / on_nodes.max(solid_loads::largest_resultant(stage, scaled));
     let displacements: Vec<(usize, Vec<f64>)> = scaled.prescribed(stage);
     let driven = displacements.iter().map(|(_, values)| norm(values)).fold(0.0_f64, f64::max);
     let by_motion = length / driven.max(largest(&stage.obstacle_motion));
@@ -282,6 +284,9 @@ pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scal
     for (name, vector) in &stage.forces {
         let freedoms = structure.translations_of(numbers[name.as_str()]);
         freedoms.zip(vector).for_each(|(freedom, value)| forces[freedom] = value * load_scale / force);
+    }
+    for (freedom, value) in solid_loads::nodal_forces(stage, scaled) {
+        forces[freedom] += value * load_scale / force;
     }
     for (name, moment) in &stage.moments {
         let rotation = structure.numbering.rotations_of(numbers[name.as_str()]).start;

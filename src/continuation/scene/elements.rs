@@ -5,11 +5,13 @@ use crate::mechanics::structure::elements::bar::Bar;
 use crate::mechanics::structure::elements::beam::Beam;
 use crate::mechanics::structure::elements::beam::segment::SectionStiffness;
 use crate::mechanics::structure::elements::rotational_spring::RotationalSpring;
+use crate::mechanics::structure::elements::solid::any::{AnySolid, SolidData};
 use crate::mechanics::structure::elements::space_beam::SpaceBeam;
 use crate::mechanics::structure::elements::space_beam::segment::SpaceSectionStiffness;
 use crate::mechanics::structure::elements::spring::Spring;
 use crate::model::Model;
 use crate::model::request::{BendingStiffness, Element};
+use crate::model::solid_data;
 use std::collections::HashMap;
 
 /// Builds the elements of a model, one after the other.
@@ -40,9 +42,26 @@ impl<'a> ElementBuilder<'a> {
                     let nodes: Vec<usize> = nodes.iter().map(|node| self.numbers[node.as_str()]).collect();
                     elements.push(RotationalSpring::new(&nodes, stiffness / self.force / self.length));
                 }
+                _ => {
+                    if let Some(solid) = self.solid(element) {
+                        solid.add_to(&mut elements);
+                    }
+                }
             }
         }
         elements
+    }
+
+    /// A solid; `None` where it is none, which a checked model has not.
+    pub fn solid(&self, element: &Element) -> Option<AnySolid> {
+        let (kind, solid) = element.solid()?;
+        let stress = self.force / self.length / self.length;
+        let material = solid_data::material(self.model.materials.get(&solid.material)?, stress).ok()?;
+        let idealisation = solid_data::idealisation(solid, self.model.dimension, self.length);
+        let places: Vec<&[f64]> = solid.nodes.iter().map(|node| self.model.nodes[node].as_slice()).collect();
+        let nodes: Vec<usize> = solid.nodes.iter().map(|node| self.numbers[node.as_str()]).collect();
+        let data = SolidData { kind, idealisation, material, mend: solid.locking };
+        AnySolid::new(&data, &nodes, &solid_data::positions(&places, idealisation, self.length)).ok()
     }
 
     /// From one node to another. A difference of the places as given: a place far from the origin causes no loss of

@@ -20,6 +20,8 @@ pub(crate) mod recorded_contacts;
 pub(crate) mod recorded_forces;
 pub(crate) mod requested_contacts;
 pub(crate) mod scales;
+mod solid_loads;
+mod solid_scales;
 pub(crate) mod stage_load;
 pub(crate) mod tolerances;
 mod warnings;

@@ -4,6 +4,7 @@ use crate::continuation::scene::build::{
     Contacts, ScaledModel, build_contacts, build_stage, build_structure, first_contacts, norm,
 };
 use crate::continuation::scene::characteristic_stiffness::resisting;
+use crate::continuation::scene::solid_scales::solid_scales;
 use crate::continuation::scene::tolerances::{LARGEST_STIFFNESS_RATIO, SIMILAR_STIFFNESS_RATIO};
 use crate::mechanics::structure::Structure;
 use crate::model::check::scope::size;
@@ -11,7 +12,7 @@ use crate::model::request::{self, Analysis, Model};
 use std::collections::HashMap;
 
 /// Largest number of stages whose resisting stiffness is computed; later ones use the largest result.
-const MOST_STAGES: usize = 8;
+pub(super) const MOST_STAGES: usize = 8;
 
 /// The scales by which a request is divided.
 pub(super) struct RequestScales {
@@ -39,7 +40,7 @@ struct Sizes {
 }
 
 /// The load factor at which a stage is to end, if specified; otherwise 1.
-fn expected_load_factor(stage: &request::Stage) -> f64 {
+pub(super) fn expected_load_factor(stage: &request::Stage) -> f64 {
     let bounds = stage.until.iter().flat_map(|until| [until.load_above, until.load_below]);
     bounds.flatten().map(f64::abs).reduce(f64::max).unwrap_or(1.0)
 }
@@ -64,7 +65,7 @@ impl Sizes {
                     bars.push(*axial_stiffness);
                 }
                 request::Element::Spring { stiffness, .. } => springs.push(norm(&stiffness.concat())),
-                request::Element::Beam { .. } | request::Element::RotationalSpring { .. } => {}
+                _ => {}
             }
         }
         let (mut largest_load, mut largest_motion) = (0.0_f64, 0.0_f64);
@@ -157,6 +158,9 @@ pub(super) fn scales(
         let length = analysis.arc_length.displacement_scale.unwrap_or(own);
         let resistances = vec![force; model.stages.len()];
         return RequestScales { length, force, resistances, stretched: length / own, structure: None };
+    }
+    if let Some(scales) = solid_scales(model, analysis, numbers, like) {
+        return scales;
     }
     let sizes = Sizes::of(model);
     let first = if sizes.bars.is_empty() { most(&sizes.springs) } else { least(&sizes.bars) };

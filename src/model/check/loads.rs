@@ -2,6 +2,7 @@
 
 use crate::model::check::numbers::{self, dot, largest, norm};
 use crate::model::check::scope::Scope;
+use crate::model::check::solids;
 use crate::model::check::structure::COMPONENT_NAMES;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::quoted;
@@ -62,13 +63,14 @@ pub(super) fn loads(scope: &Scope, around: &Surroundings, stage: &Stage, at: &Do
     let mut loaded = forces(scope, stage, &forces_at, mistakes);
     loaded |= moments(scope, stage, &at.member("moments"), mistakes);
     loaded |= displacements(scope, around, stage, &at.member("displacements"), mistakes);
+    loaded |= solids::loads(scope, stage, at, mistakes);
     loaded |= motions(scope, around, stage, &at.member("obstacle_motion"), mistakes);
     if !loaded && mistakes.count() == before {
         let only_forces =
             stage.moments.is_empty() && stage.displacements.is_empty() && stage.obstacle_motion.is_empty();
         let at = if only_forces && !stage.forces.is_empty() { &forces_at } else { at };
         mistakes.add(at, || {
-            "the stage has no load; a force that is not zero on a free component, a moment on a rotation that is free, a \
+            "the stage has no load; a force, a body force or a traction that is not zero on a free component, a moment on a rotation that is free, a \
              displacement of a support that an element joins to a free component, or a motion of an obstacle against a \
              contact is expected"
         });

@@ -11,6 +11,7 @@ mod mechanism;
 mod numbers;
 mod obstacles;
 pub(crate) mod scope;
+mod solids;
 mod stages;
 mod structure;
 mod study;
@@ -87,7 +88,10 @@ fn model(model: &Model, at: &DocumentPlace, mistakes: &mut Mistakes) -> usize {
     let scope = Scope::new(model, *at);
     structure::nodes(&scope, mistakes);
     structure::supports(&scope, mistakes);
+    solids::materials(&scope, mistakes);
     structure::elements(&scope, mistakes);
+    solids::one_meaning_of_forces(&scope, mistakes);
+    solids::surfaces(&scope, mistakes);
     obstacles::obstacles(&scope, mistakes);
     contacts::contacts(&scope, mistakes);
     mechanism::mechanism(&scope, mistakes);

@@ -4,6 +4,7 @@ use crate::model::check::beams;
 use crate::model::check::loads;
 use crate::model::check::numbers::{self, difference, largest, norm};
 use crate::model::check::scope::{Scope, proper_name};
+use crate::model::check::solids;
 use crate::model::input::limits::{COINCIDENCE_TOLERANCE, SYMMETRY_TOLERANCE};
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::quoted;
@@ -103,6 +104,11 @@ pub(super) fn elements(scope: &Scope, mistakes: &mut Mistakes) {
                 }
                 distinct_nodes(scope, nodes, 2, &at, mistakes);
                 numbers::positive(*stiffness, &at.member("stiffness"), mistakes);
+            }
+            _ => {
+                if let Some((kind, solid)) = element.solid() {
+                    solids::solid(scope, kind, solid, &at, mistakes);
+                }
             }
         }
     }

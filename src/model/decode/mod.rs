@@ -7,6 +7,7 @@ mod analysis;
 mod follow;
 mod model;
 mod reader;
+mod solids;
 mod study;
 mod sweep;
 #[cfg(test)]

@@ -2,7 +2,9 @@
 
 use indexmap::IndexMap;
 
+use crate::mechanics::structure::elements::solid::shapes::kind::SolidKind;
 use crate::model::decode::reader::{Choices, Fields, Input, count, number, numbers, text};
+use crate::model::decode::solids;
 use crate::model::input::mistakes::Mistakes;
 use crate::model::request::{
     BendingStiffness, Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Strain, Units,
@@ -11,7 +13,20 @@ use crate::model::request::{
 
 const MODEL: Fields = Fields {
     what: "a model",
-    known: &["name", "units", "dimension", "nodes", "supports", "elements", "obstacles", "contacts", "stages"],
+    known: &[
+        "name",
+        "units",
+        "dimension",
+        "nodes",
+        "supports",
+        "materials",
+        "elements",
+        "surfaces",
+        "sets",
+        "obstacles",
+        "contacts",
+        "stages",
+    ],
     later: &[],
 };
 
@@ -52,8 +67,8 @@ const CONTACT: Fields = Fields { what: "a contact", known: &["node", "obstacle",
 
 const STAGE: Fields = Fields {
     what: "a stage",
-    known: &["name", "forces", "moments", "displacements", "obstacle_motion", "until"],
-    later: &[],
+    known: &["name", "forces", "moments", "displacements", "body_forces", "tractions", "obstacle_motion", "until"],
+    later: &[("pressures", "`tractions`, which keep their direction, would do for small rotations")],
 };
 
 const UNTIL: Fields = Fields {
@@ -71,6 +86,7 @@ enum ElementKind {
     Spring,
     Beam,
     RotationalSpring,
+    Solid(SolidKind),
 }
 
 const ELEMENT_KIND: Choices<ElementKind> = Choices {
@@ -80,6 +96,14 @@ const ELEMENT_KIND: Choices<ElementKind> = Choices {
         ("spring", ElementKind::Spring),
         ("beam", ElementKind::Beam),
         ("rotational_spring", ElementKind::RotationalSpring),
+        ("triangle3", ElementKind::Solid(SolidKind::Triangle3)),
+        ("triangle6", ElementKind::Solid(SolidKind::Triangle6)),
+        ("quadrilateral4", ElementKind::Solid(SolidKind::Quadrilateral4)),
+        ("quadrilateral8", ElementKind::Solid(SolidKind::Quadrilateral8)),
+        ("tetrahedron4", ElementKind::Solid(SolidKind::Tetrahedron4)),
+        ("tetrahedron10", ElementKind::Solid(SolidKind::Tetrahedron10)),
+        ("hexahedron8", ElementKind::Solid(SolidKind::Hexahedron8)),
+        ("hexahedron20", ElementKind::Solid(SolidKind::Hexahedron20)),
     ],
     later: &[],
 };
@@ -130,7 +154,14 @@ pub(super) fn model(input: &Input, mistakes: &mut Mistakes) -> Option<Model> {
     let nodes = object.required("nodes", mistakes, vectors);
     let supports = object
         .with_default("supports", Default::default(), mistakes, |input, mistakes| input.map(mistakes, components));
+    let materials = object.with_default("materials", Default::default(), mistakes, |input, mistakes| {
+        input.map(mistakes, solids::material)
+    });
     let elements = object.required("elements", mistakes, |input, mistakes| input.list(mistakes, element));
+    let surfaces = object
+        .with_default("surfaces", Default::default(), mistakes, |input, mistakes| input.map(mistakes, solids::surface));
+    let sets =
+        object.with_default("sets", Default::default(), mistakes, |input, mistakes| input.map(mistakes, solids::set));
     let obstacles =
         object.with_default("obstacles", Default::default(), mistakes, |input, mistakes| input.map(mistakes, obstacle));
     let contacts =
@@ -143,7 +174,10 @@ pub(super) fn model(input: &Input, mistakes: &mut Mistakes) -> Option<Model> {
         dimension: usize::try_from(dimension?).unwrap_or(usize::MAX),
         nodes: nodes?,
         supports: supports?,
+        materials: materials?,
         elements: elements?,
+        surfaces: surfaces?,
+        sets: sets?,
         obstacles: obstacles?,
         contacts: contacts?,
         stages: stages?,
@@ -184,6 +218,7 @@ fn element(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
         ElementKind::Spring => spring(input, mistakes),
         ElementKind::Beam => beam(input, mistakes),
         ElementKind::RotationalSpring => rotational_spring(input, mistakes),
+        ElementKind::Solid(kind) => solids::solid(kind, input, mistakes),
     }
 }
 
@@ -293,6 +328,8 @@ fn stage(input: &Input, mistakes: &mut Mistakes) -> Option<Stage> {
     let moments =
         object.with_default("moments", Default::default(), mistakes, |input, mistakes| input.map(mistakes, number));
     let displacements = object.with_default("displacements", Default::default(), mistakes, vectors);
+    let body_forces = object.with_default("body_forces", Default::default(), mistakes, vectors);
+    let tractions = object.with_default("tractions", Default::default(), mistakes, vectors);
     let obstacle_motion = object.with_default("obstacle_motion", Default::default(), mistakes, vectors);
     let until = object.optional("until", mistakes, until);
     Some(Stage {
@@ -300,6 +337,8 @@ fn stage(input: &Input, mistakes: &mut Mistakes) -> Option<Stage> {
         forces: forces?,
         moments: moments?,
         displacements: displacements?,
+        body_forces: body_forces?,
+        tractions: tractions?,
         obstacle_motion: obstacle_motion?,
         until: until?,
     })

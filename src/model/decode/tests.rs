@@ -72,7 +72,48 @@ fn element() -> impl Strategy<Value = Element> {
     );
     let rotational_spring = (vec(name(), 0..3), number(), of(name()))
         .prop_map(|(nodes, stiffness, name)| Element::RotationalSpring { nodes, stiffness, name });
-    prop_oneof![bar, spring, beam, rotational_spring]
+    let plane = one_of([PlaneCondition::Strain, PlaneCondition::Stress, PlaneCondition::Axisymmetric]);
+    let locking = one_of([LockingMend::None, LockingMend::MeanGradient, LockingMend::MeanDilatation]);
+    let kind = one_of([
+        SolidKind::Triangle3,
+        SolidKind::Triangle6,
+        SolidKind::Quadrilateral4,
+        SolidKind::Quadrilateral8,
+        SolidKind::Tetrahedron4,
+        SolidKind::Tetrahedron10,
+        SolidKind::Hexahedron8,
+        SolidKind::Hexahedron20,
+    ]);
+    let solid = (kind, vec(name(), 0..4), name(), of(plane), of(number()), of(locking), of(name())).prop_map(
+        |(kind, nodes, material, plane, thickness, locking, name)| {
+            Element::of_solid(kind, Solid { nodes, material, plane, thickness, locking, name })
+        },
+    );
+    prop_oneof![bar, spring, beam, rotational_spring, solid]
+}
+
+fn material() -> impl Strategy<Value = Material> {
+    let constants = (number(), number(), of(number())).prop_map(|(young, poisson, density)| ElasticConstants {
+        young,
+        poisson,
+        density,
+    });
+    let elastic = (0..3, constants).prop_map(|(kind, constants)| match kind {
+        0 => Material::LinearElastic(constants),
+        1 => Material::SaintVenantKirchhoff(constants),
+        _ => Material::NeoHookean(constants),
+    });
+    let mooney_rivlin = (number(), number(), number(), of(number()))
+        .prop_map(|(c10, c01, bulk_modulus, density)| Material::MooneyRivlin { c10, c01, bulk_modulus, density });
+    prop_oneof![elastic, mooney_rivlin]
+}
+
+fn surface() -> impl Strategy<Value = Surface> {
+    vec(vec(name(), 0..4), 0..3).prop_map(|faces| Surface { faces })
+}
+
+fn set() -> impl Strategy<Value = NamedSet> {
+    (vec(name(), 0..3), vec(name(), 0..3)).prop_map(|(nodes, elements)| NamedSet { nodes, elements })
 }
 
 fn obstacle() -> impl Strategy<Value = Obstacle> {
@@ -102,12 +143,15 @@ fn until() -> impl Strategy<Value = Until> {
 }
 
 fn stage() -> impl Strategy<Value = Stage> {
-    (name(), map(numbers()), map(number()), map(numbers()), map(numbers()), of(until())).prop_map(
-        |(name, forces, moments, displacements, obstacle_motion, until)| Stage {
+    let on_solids = (map(numbers()), map(numbers()));
+    (name(), map(numbers()), map(number()), map(numbers()), on_solids, map(numbers()), of(until())).prop_map(
+        |(name, forces, moments, displacements, (body_forces, tractions), obstacle_motion, until)| Stage {
             name,
             forces,
             moments,
             displacements,
+            body_forces,
+            tractions,
             obstacle_motion,
             until,
         },
@@ -118,9 +162,24 @@ fn model() -> impl Strategy<Value = Model> {
     let units = (of(name()), of(name())).prop_map(|(length, force)| Units { length, force });
     let geometry =
         (of(name()), of(units), 0usize..5, map(numbers()), map(vec(component(), 0..4)), vec(element(), 0..4));
+    let solids = (map(material()), map(surface()), map(set()));
     let rest = (map(obstacle()), vec(contact(), 0..4), vec(stage(), 0..3));
-    (geometry, rest).prop_map(|((name, units, dimension, nodes, supports, elements), (obstacles, contacts, stages))| {
-        Model { name, units, dimension, nodes, supports, elements, obstacles, contacts, stages }
+    (geometry, solids, rest).prop_map(|(geometry, (materials, surfaces, sets), (obstacles, contacts, stages))| {
+        let (name, units, dimension, nodes, supports, elements) = geometry;
+        Model {
+            name,
+            units,
+            dimension,
+            nodes,
+            supports,
+            materials,
+            elements,
+            surfaces,
+            sets,
+            obstacles,
+            contacts,
+            stages,
+        }
     })
 }
 

@@ -19,13 +19,15 @@ use serde::{Deserialize, Serialize};
 
 pub use crate::branching::directions::feasible_direction::Selection;
 pub use crate::mechanics::structure::elements::bar::Strain;
+pub use crate::mechanics::structure::elements::solid::shapes::kind::{LockingMend, SolidKind};
 pub use analysis::{Analysis, ArcLength, Certificate, Events, Explore, LoadSign, Method, Mpec, Regularised};
 pub use record::{
     ContactRange, ElementReference, ForceRange, Record, RecordedContact, RecordedContacts, RecordedElements,
     RecordedSupports,
 };
 pub use structure::{
-    BendingStiffness, Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Units, Until,
+    BendingStiffness, Component, Contact, DisplacementBound, ElasticConstants, Element, Material, Model, NamedSet,
+    Obstacle, PlaneCondition, Side, Solid, Stage, Surface, Units, Until,
 };
 
 /// A model and how to trace it.

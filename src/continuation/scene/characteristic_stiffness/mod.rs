@@ -69,6 +69,28 @@ pub(super) fn resisting(structure: &Structure, contacts: &[ContactPair], pattern
     stiffest
 }
 
+/// The dimensionless load at which the undeformed structure would move by the unit of length, by its tangent with the
+/// closed contacts fixed; `None` where the load moves nothing, or without bound.
+pub(super) fn load_at_unit_displacement(
+    structure: &Structure,
+    contacts: &[ContactPair],
+    pattern: &LoadPattern,
+) -> Option<f64> {
+    let held = contacts.iter().map(|contact| contact.gap(&[0.0; 3]) <= CLOSED_GAP).collect();
+    let still = vec![0.0; structure.freedoms()];
+    let estimate = StiffnessEstimate {
+        structure,
+        contacts,
+        pattern,
+        stiffness_at: stiffness_at(structure, &still),
+        usual: usual_stiffness(structure, &still),
+        held,
+    };
+    let motion = estimate.at_first_order(&still)?;
+    let is_moved = estimate.mean(&motion, false).is_some();
+    Some(motion.load.abs()).filter(|load| is_moved && *load > 0.0 && load.is_finite())
+}
+
 /// The mean diagonal entry of the tangent at each node, which does not depend on the axes.
 fn stiffness_at(structure: &Structure, still: &[f64]) -> Vec<f64> {
     let mut diagonal = vec![0.0_f64; structure.freedoms()];

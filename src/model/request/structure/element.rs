@@ -1,11 +1,13 @@
 //! Bars, springs and beams.
 
 use crate::mechanics::structure::elements::bar::Strain;
+use crate::mechanics::structure::elements::solid::shapes::kind::SolidKind;
 use crate::model::request::structure::component::Component;
+use crate::model::request::structure::solid::Solid;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
-/// An elastic element: a bar, a spring, a beam.
+/// An elastic element: a bar, a spring, a beam, a solid.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
@@ -86,6 +88,22 @@ pub enum Element {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         name: Option<String>,
     },
+    /// A linear triangle.
+    Triangle3(Solid),
+    /// A quadratic triangle.
+    Triangle6(Solid),
+    /// A bilinear quadrilateral.
+    Quadrilateral4(Solid),
+    /// A quadratic quadrilateral.
+    Quadrilateral8(Solid),
+    /// A linear tetrahedron.
+    Tetrahedron4(Solid),
+    /// A quadratic tetrahedron.
+    Tetrahedron10(Solid),
+    /// A trilinear hexahedron.
+    Hexahedron8(Solid),
+    /// A quadratic hexahedron.
+    Hexahedron20(Solid),
 }
 
 /// The stiffness of a beam against bending (force times length squared).
@@ -227,11 +245,11 @@ impl Element {
     /// Whether the element is joined to a node by the node's rotation.
     pub fn turns_with(&self, node: &str) -> bool {
         match self {
-            Self::Bar { .. } | Self::Spring { .. } => false,
             Self::Beam { releases, .. } => {
                 !releases.get(node).is_some_and(|released| released.contains(&Component::Rz))
             }
             Self::RotationalSpring { .. } => true,
+            _ => false,
         }
     }
 
@@ -265,21 +283,65 @@ impl Element {
     /// The element with a name, by which results and [`Record`](crate::model::request::Record) refer to it.
     #[must_use]
     pub fn with_name(mut self, given: impl Into<String>) -> Self {
-        let (Self::Bar { name, .. }
-        | Self::Spring { name, .. }
-        | Self::Beam { name, .. }
-        | Self::RotationalSpring { name, .. }) = &mut self;
-        *name = Some(given.into());
+        *self.name_mut() = Some(given.into());
         self
     }
 
     /// The name by which results refer to the element, where it has one.
     pub fn name(&self) -> Option<&str> {
-        let (Self::Bar { name, .. }
-        | Self::Spring { name, .. }
-        | Self::Beam { name, .. }
-        | Self::RotationalSpring { name, .. }) = self;
-        name.as_deref()
+        match self {
+            Self::Bar { name, .. }
+            | Self::Spring { name, .. }
+            | Self::Beam { name, .. }
+            | Self::RotationalSpring { name, .. } => name.as_deref(),
+            _ => self.solid().and_then(|(_, solid)| solid.name.as_deref()),
+        }
+    }
+
+    fn name_mut(&mut self) -> &mut Option<String> {
+        match self {
+            Self::Bar { name, .. }
+            | Self::Spring { name, .. }
+            | Self::Beam { name, .. }
+            | Self::RotationalSpring { name, .. } => name,
+            Self::Triangle3(solid)
+            | Self::Triangle6(solid)
+            | Self::Quadrilateral4(solid)
+            | Self::Quadrilateral8(solid)
+            | Self::Tetrahedron4(solid)
+            | Self::Tetrahedron10(solid)
+            | Self::Hexahedron8(solid)
+            | Self::Hexahedron20(solid) => &mut solid.name,
+        }
+    }
+
+    /// A solid of a kind.
+    pub fn of_solid(kind: SolidKind, solid: Solid) -> Self {
+        match kind {
+            SolidKind::Triangle3 => Self::Triangle3(solid),
+            SolidKind::Triangle6 => Self::Triangle6(solid),
+            SolidKind::Quadrilateral4 => Self::Quadrilateral4(solid),
+            SolidKind::Quadrilateral8 => Self::Quadrilateral8(solid),
+            SolidKind::Tetrahedron4 => Self::Tetrahedron4(solid),
+            SolidKind::Tetrahedron10 => Self::Tetrahedron10(solid),
+            SolidKind::Hexahedron8 => Self::Hexahedron8(solid),
+            SolidKind::Hexahedron20 => Self::Hexahedron20(solid),
+        }
+    }
+
+    /// The kind and the data of a solid; `None` for other elements.
+    pub fn solid(&self) -> Option<(SolidKind, &Solid)> {
+        match self {
+            Self::Bar { .. } | Self::Spring { .. } | Self::Beam { .. } | Self::RotationalSpring { .. } => None,
+            Self::Triangle3(solid) => Some((SolidKind::Triangle3, solid)),
+            Self::Triangle6(solid) => Some((SolidKind::Triangle6, solid)),
+            Self::Quadrilateral4(solid) => Some((SolidKind::Quadrilateral4, solid)),
+            Self::Quadrilateral8(solid) => Some((SolidKind::Quadrilateral8, solid)),
+            Self::Tetrahedron4(solid) => Some((SolidKind::Tetrahedron4, solid)),
+            Self::Tetrahedron10(solid) => Some((SolidKind::Tetrahedron10, solid)),
+            Self::Hexahedron8(solid) => Some((SolidKind::Hexahedron8, solid)),
+            Self::Hexahedron20(solid) => Some((SolidKind::Hexahedron20, solid)),
+        }
     }
 
     /// Names of the nodes that the element joins; one where the other end is the ground.
@@ -289,6 +351,7 @@ impl Element {
             | Self::Spring { nodes, .. }
             | Self::Beam { nodes, .. }
             | Self::RotationalSpring { nodes, .. } => nodes,
+            _ => self.solid().map_or(&[], |(_, solid)| &solid.nodes),
         }
     }
 }

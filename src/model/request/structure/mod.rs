@@ -7,12 +7,18 @@
 
 mod component;
 mod element;
+mod material;
 mod model;
 mod obstacle;
+mod solid;
 mod stage;
+mod surface;
 
 pub use component::Component;
 pub use element::{BendingStiffness, Element};
+pub use material::{ElasticConstants, Material};
 pub use model::{Model, Units};
 pub use obstacle::{Contact, Obstacle, Side};
+pub use solid::{PlaneCondition, Solid};
 pub use stage::{DisplacementBound, Stage, Until};
+pub use surface::{NamedSet, Surface};

@@ -2,8 +2,10 @@
 
 use crate::model::request::structure::component::Component;
 use crate::model::request::structure::element::Element;
+use crate::model::request::structure::material::Material;
 use crate::model::request::structure::obstacle::{Contact, Obstacle};
 use crate::model::request::structure::stage::Stage;
+use crate::model::request::structure::surface::{NamedSet, Surface};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
@@ -26,8 +28,17 @@ pub struct Model {
     /// Node name to the components held.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub supports: IndexMap<String, Vec<Component>>,
-    /// Bars, springs and beams.
+    /// Name to material of solids.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub materials: IndexMap<String, Material>,
+    /// Bars, springs, beams and solids.
     pub elements: Vec<Element>,
+    /// Name to faces of solids.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub surfaces: IndexMap<String, Surface>,
+    /// Name to nodes and elements; `@name` stands for the nodes where a node is expected.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub sets: IndexMap<String, NamedSet>,
     /// Obstacle name to obstacle.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub obstacles: IndexMap<String, Obstacle>,
@@ -95,7 +106,10 @@ impl Model {
             dimension,
             nodes: IndexMap::new(),
             supports: IndexMap::new(),
+            materials: IndexMap::new(),
             elements: Vec::new(),
+            surfaces: IndexMap::new(),
+            sets: IndexMap::new(),
             obstacles: IndexMap::new(),
             contacts: Vec::new(),
             stages: Vec::new(),
@@ -116,7 +130,21 @@ impl Model {
         self
     }
 
-    /// With one more bar or spring.
+    /// With a material, in place of one of the same name.
+    #[must_use]
+    pub fn material(mut self, name: impl Into<String>, material: Material) -> Self {
+        self.materials.insert(name.into(), material);
+        self
+    }
+
+    /// With a surface of faces, in place of one of the same name.
+    #[must_use]
+    pub fn surface(mut self, name: impl Into<String>, faces: Vec<Vec<String>>) -> Self {
+        self.surfaces.insert(name.into(), Surface { faces });
+        self
+    }
+
+    /// With one more element.
     #[must_use]
     pub fn element(mut self, element: Element) -> Self {
         self.elements.push(element);

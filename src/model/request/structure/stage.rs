@@ -23,6 +23,12 @@ pub struct Stage {
     /// rotation (radians) last where the node has one and it is to be prescribed; multiplied by the load factor.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub displacements: IndexMap<String, Vec<f64>>,
+    /// Material name to force per undeformed volume on its solids; multiplied by the load factor.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub body_forces: IndexMap<String, Vec<f64>>,
+    /// Surface name to force per undeformed area, which keeps its direction; multiplied by the load factor.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub tractions: IndexMap<String, Vec<f64>>,
     /// Obstacle name to translation (length); multiplied by the load factor.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub obstacle_motion: IndexMap<String, Vec<f64>>,
@@ -49,6 +55,8 @@ impl Stage {
             forces: IndexMap::new(),
             moments: IndexMap::new(),
             displacements: IndexMap::new(),
+            body_forces: IndexMap::new(),
+            tractions: IndexMap::new(),
             obstacle_motion: IndexMap::new(),
             until: None,
         }
@@ -72,6 +80,20 @@ impl Stage {
     #[must_use]
     pub fn displacement(mut self, node: impl Into<String>, displacement: impl Into<Vec<f64>>) -> Self {
         self.displacements.insert(node.into(), displacement.into());
+        self
+    }
+
+    /// With a force per undeformed volume on the solids of a material, in place of one given before.
+    #[must_use]
+    pub fn body_force(mut self, material: impl Into<String>, force: impl Into<Vec<f64>>) -> Self {
+        self.body_forces.insert(material.into(), force.into());
+        self
+    }
+
+    /// With a force per undeformed area on a surface, in place of one given before.
+    #[must_use]
+    pub fn traction(mut self, surface: impl Into<String>, traction: impl Into<Vec<f64>>) -> Self {
+        self.tractions.insert(surface.into(), traction.into());
         self
     }
 

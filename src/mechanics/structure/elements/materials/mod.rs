@@ -96,7 +96,9 @@ pub enum MaterialError {
     #[error("Young's modulus must be positive, not {0}")]
     Young(f64),
     /// Poisson's ratio.
-    #[error("Poisson's ratio must lie between -1 and 0.5 (for nearly incompressible materials up to 0.4999), not be {0}")]
+    #[error(
+        "Poisson's ratio must lie between -1 and 0.5 (for nearly incompressible materials up to 0.4999), not be {0}"
+    )]
     Poisson(f64),
     /// The constants of Mooney and Rivlin.
     #[error("the constants {0} and {1} must not be negative and their sum must be positive")]

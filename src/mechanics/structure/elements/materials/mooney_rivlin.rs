@@ -76,16 +76,10 @@ impl Material for MooneyRivlin {
         let change = volume_change(gradient);
         let volume = 1.0 + change;
         let (power, first_invariant) = (volume.powf(-2.0 / 3.0), 3.0 + 2.0 * trace(&strain));
-        let of_second = deviator(&sum(
-            &scaled(2.0 * (first_invariant - 2.0), &strain),
-            -4.0,
-            &product(&strain, &strain),
-        ));
-        let distortional = sum(
-            &scaled(4.0 * self.first * power, &deviator(&strain)),
-            2.0 * self.second * power * power,
-            &of_second,
-        );
+        let of_second =
+            deviator(&sum(&scaled(2.0 * (first_invariant - 2.0), &strain), -4.0, &product(&strain, &strain)));
+        let distortional =
+            sum(&scaled(4.0 * self.first * power, &deviator(&strain)), 2.0 * self.second * power * power, &of_second);
         let whole = sum(&distortional, 0.5 * self.bulk * change * (volume + 1.0), &IDENTITY);
         scaled(1.0 / volume, &product(&cofactor(&sum(gradient, 1.0, &IDENTITY)), &whole))
     }

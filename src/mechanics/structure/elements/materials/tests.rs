@@ -225,7 +225,8 @@ fn a_rotation_turns_the_stress_and_keeps_the_energy() {
 #[test]
 fn homogeneous_states_meet_their_closed_forms() {
     let ElasticModuli { shear, lame } = MODULI;
-    let near = |value: f64, exact: f64| assert!((value - exact).abs() <= 1e-12 * exact.abs().max(1.0), "{value} {exact}");
+    let near =
+        |value: f64, exact: f64| assert!((value - exact).abs() <= 1e-12 * exact.abs().max(1.0), "{value} {exact}");
     let [one, two, three] = [1.7, 0.8, 1.1_f64];
     let stretched = [[one - 1.0, 0.0, 0.0], [0.0, two - 1.0, 0.0], [0.0, 0.0, three - 1.0]];
     let sheared = |by: f64| [[0.0, by, 0.0], [0.0; 3], [0.0; 3]];

@@ -16,15 +16,16 @@
 //! elasticity, finite for an iteration to go on; [`stretch`](FiniteElement::stretch), the least `J`, tells that the state
 //! is none to accept.
 
+pub mod any;
 pub mod formulations;
 pub mod loads;
 pub mod shapes;
 #[cfg(test)]
 mod tests;
 
+use crate::mechanics::structure::elements::materials::Material;
 use crate::mechanics::structure::elements::materials::linear_elastic::LinearElastic;
 use crate::mechanics::structure::elements::materials::tensor::{Tensor2, contraction, deviator};
-use crate::mechanics::structure::elements::materials::Material;
 use crate::mechanics::structure::elements::{COLLAPSED, FiniteElement, Resultants};
 use formulations::hourglass_stiffness::hourglass_stiffness;
 use formulations::mean_dilatation::MeanDilatation;

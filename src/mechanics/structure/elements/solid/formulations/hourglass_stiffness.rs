@@ -15,15 +15,17 @@
 //! C. Simo, F. Armero, R. L. Taylor, Comput. Methods Appl. Mech. Eng. 110 (1993) 359, doi:10.1016/0045-7825(93)90215-J).
 
 use crate::mechanics::structure::elements::materials::ElasticModuli;
+use crate::mechanics::structure::elements::materials::Material;
 use crate::mechanics::structure::elements::materials::linear_elastic::LinearElastic;
 use crate::mechanics::structure::elements::materials::tensor::{
     IDENTITY, Tensor2, contraction, product, scaled, sum, transpose,
 };
-use crate::mechanics::structure::elements::materials::Material;
+use crate::mechanics::structure::elements::solid::formulations::mean_gradient::MeanGradient;
 use crate::mechanics::structure::elements::solid::shapes::geometry::{PointGeometry, ReferenceGeometry};
 use crate::mechanics::structure::elements::solid::shapes::kind::Idealisation;
-use crate::mechanics::structure::elements::solid::formulations::mean_gradient::MeanGradient;
-use crate::mechanics::structure::elements::solid::shapes::shape_functions::{HEXAHEDRON, QUADRILATERAL, ShapePoint, of_cube};
+use crate::mechanics::structure::elements::solid::shapes::shape_functions::{
+    HEXAHEDRON, QUADRILATERAL, ShapePoint, of_cube,
+};
 use nalgebra::DMatrix;
 
 /// An enhanced strain in natural coordinates: the product of these coordinates times the symmetric part of the dyad of
@@ -38,8 +40,7 @@ const fn strain(along: &'static [usize], one: usize, other: usize) -> EnhancedSt
     EnhancedStrain { along, dyad: Some([one, other]) }
 }
 
-const IN_PLANE: [EnhancedStrain; 4] =
-    [strain(&[0], 0, 0), strain(&[1], 1, 1), strain(&[0], 0, 1), strain(&[1], 0, 1)];
+const IN_PLANE: [EnhancedStrain; 4] = [strain(&[0], 0, 0), strain(&[1], 1, 1), strain(&[0], 0, 1), strain(&[1], 0, 1)];
 
 const AROUND_AXIS: EnhancedStrain = strain(&[0, 1], 2, 2);
 
@@ -75,8 +76,7 @@ pub fn hourglass_stiffness<const N: usize, const D: usize, const S: usize>(
     let centre = centre_of::<N, D>();
     let frame = geometry.inverse_jacobian(&centre);
     let density = |point: &ShapePoint<N, D>| geometry.jacobian_determinant(point) * geometry.thickness_at(point);
-    let of_mean: Vec<Tensor2> =
-        motions.iter().map(|motion| strain_of::<N, D, S>(motion, &mean.slots::<S>())).collect();
+    let of_mean: Vec<Tensor2> = motions.iter().map(|motion| strain_of::<N, D, S>(motion, &mean.slots::<S>())).collect();
     let count = motions.len();
     let mut gram: DMatrix<f64> = DMatrix::zeros(count + enhanced.len(), count + enhanced.len());
     for point in shape {
@@ -132,9 +132,8 @@ fn unit_motions<const N: usize, const D: usize>(mean: &MeanGradient<N, D>) -> Op
     }
     let gram = &slopes * slopes.transpose();
     let motions = slopes.transpose() * gram.cholesky()?.inverse();
-    let motion = |column: usize| {
-        std::array::from_fn(|node| std::array::from_fn(|axis| motions[(node * D + axis, column)]))
-    };
+    let motion =
+        |column: usize| std::array::from_fn(|node| std::array::from_fn(|axis| motions[(node * D + axis, column)]));
     Some((0..count).map(motion).collect())
 }
 

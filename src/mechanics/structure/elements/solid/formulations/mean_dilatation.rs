@@ -276,9 +276,8 @@ impl<const N: usize, const D: usize, const S: usize> Formulation<N, D, S> for Me
             bulk += at.volume * tangent.bulk;
         }
         // `h gᵀ + g hᵀ + c g gᵀ = (h + ½ c g) gᵀ + g (h + ½ c g)ᵀ`.
-        let whole: Nodal<N, D> = std::array::from_fn(|node| {
-            std::array::from_fn(|axis| mixed[node][axis] + 0.5 * bulk * slope[node][axis])
-        });
+        let whole: Nodal<N, D> =
+            std::array::from_fn(|node| std::array::from_fn(|axis| mixed[node][axis] + 0.5 * bulk * slope[node][axis]));
         add_symmetric_dyad(1.0, &whole, &slope, stiffness);
         Some(())
     }

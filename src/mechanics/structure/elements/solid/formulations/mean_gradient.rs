@@ -22,13 +22,13 @@
 //! `ℓ (F̄_11 - F̄_33)` and `ℓ F̄_12`, linear in the displacement (`ℓ² = ` area of the cross-section).
 
 use crate::mechanics::structure::elements::materials::tensor::{IDENTITY, Tensor2, cofactor, determinant, sum};
-use crate::mechanics::structure::elements::solid::shapes::geometry::{PointGeometry, ReferenceGeometry};
 use crate::mechanics::structure::elements::solid::formulations::nodal_sums::{
     Nodal, add_forces, add_stiffness, gradient,
 };
 use crate::mechanics::structure::elements::solid::formulations::{
     Body, Formulation, PointStress, add_force_sizes, ratio_of,
 };
+use crate::mechanics::structure::elements::solid::shapes::geometry::{PointGeometry, ReferenceGeometry};
 use crate::mechanics::structure::elements::solid::shapes::shape_functions::{HEXAHEDRON, QUADRILATERAL, ShapePoint};
 use std::array::from_fn;
 
@@ -75,7 +75,8 @@ impl<const N: usize, const D: usize> MeanGradient<N, D> {
             }
         }
         slots.iter_mut().flatten().for_each(|value| *value /= volume);
-        let natural = |node: usize, axis: usize| if D == 2 { QUADRILATERAL[node][axis] } else { HEXAHEDRON[node][axis] };
+        let natural =
+            |node: usize, axis: usize| if D == 2 { QUADRILATERAL[node][axis] } else { HEXAHEDRON[node][axis] };
         // The products of natural coordinates that the inhomogeneous vectors go with.
         let products: &[&[usize]] = if D == 2 { &[&[0, 1]] } else { &[&[1, 2], &[0, 2], &[0, 1], &[0, 1, 2]] };
         let mode = |axes: &&[usize]| {
@@ -140,12 +141,7 @@ impl<const N: usize, const D: usize> MeanGradient<N, D> {
 
     /// The inhomogeneous strains of a displacement; `deformation`: `F̄`, of positive determinant, or the identity where
     /// strains count as small.
-    fn inhomogeneity(
-        &self,
-        displacement: &Nodal<N, D>,
-        deformation: &Tensor2,
-        is_small: bool,
-    ) -> Inhomogeneity<N, D> {
+    fn inhomogeneity(&self, displacement: &Nodal<N, D>, deformation: &Tensor2, is_small: bool) -> Inhomogeneity<N, D> {
         let inverse = if is_small { IDENTITY } else { Self::inverse_in_plane(deformation) };
         let mut strains = [0.0; MOST_STRAINS];
         for (own, mode) in strains.chunks_exact_mut(D).zip(&self.modes) {
@@ -230,9 +226,8 @@ impl<const N: usize, const D: usize> MeanGradient<N, D> {
         let slopes: [[[f64; D]; MOST_STRAINS]; N] = from_fn(|node| self.slopes(node, &of.inverse, &of.weights[node]));
         let vectors = self.vectors(of);
         // `F̄⁻ᵀ ḡ_a`: the mean gradients in the deformed state.
-        let deformed: [[f64; D]; N] = from_fn(|node| {
-            from_fn(|axis| (0..D).map(|row| of.inverse[row][axis] * self.slots[node][row]).sum())
-        });
+        let deformed: [[f64; D]; N] =
+            from_fn(|node| from_fn(|axis| (0..D).map(|row| of.inverse[row][axis] * self.slots[node][row]).sum()));
         for node in 0..N {
             // `Z_aᵀ H`.
             let mut applied = [[0.0; MOST_STRAINS]; D];

@@ -61,10 +61,9 @@ pub fn faces_of(kind: SolidKind) -> (FaceKind, &'static [&'static [usize]]) {
         SolidKind::Quadrilateral4 => (FaceKind::Segment2, &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]]),
         SolidKind::Quadrilateral8 => (FaceKind::Segment3, &[&[0, 1, 4], &[1, 2, 5], &[2, 3, 6], &[3, 0, 7]]),
         SolidKind::Tetrahedron4 => (FaceKind::Triangle3, &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[0, 3, 2]]),
-        SolidKind::Tetrahedron10 => (
-            FaceKind::Triangle6,
-            &[&[0, 2, 1, 6, 5, 4], &[0, 1, 3, 4, 8, 7], &[1, 2, 3, 5, 9, 8], &[0, 3, 2, 7, 9, 6]],
-        ),
+        SolidKind::Tetrahedron10 => {
+            (FaceKind::Triangle6, &[&[0, 2, 1, 6, 5, 4], &[0, 1, 3, 4, 8, 7], &[1, 2, 3, 5, 9, 8], &[0, 3, 2, 7, 9, 6]])
+        }
         SolidKind::Hexahedron8 => (
             FaceKind::Quadrilateral4,
             &[&[0, 3, 2, 1], &[4, 5, 6, 7], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]],

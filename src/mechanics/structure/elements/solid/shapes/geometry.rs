@@ -6,7 +6,9 @@
 
 use crate::mechanics::structure::elements::materials::tensor::{IDENTITY, cofactor, determinant};
 use crate::mechanics::structure::elements::solid::shapes::kind::{Idealisation, SolidKind};
-use crate::mechanics::structure::elements::solid::shapes::quadrature::{centroid, gauss, interior, triangle_of_degree_4};
+use crate::mechanics::structure::elements::solid::shapes::quadrature::{
+    centroid, gauss, interior, triangle_of_degree_4,
+};
 use crate::mechanics::structure::elements::solid::shapes::shape_functions::{
     HEXAHEDRON, QUADRILATERAL, ShapePoint, of_cube, of_simplex,
 };

@@ -1,6 +1,7 @@
 //! The kinds of solid elements, the idealisations of the plane and the mends against locking.
 
 use crate::mechanics::structure::elements::materials::ElasticModuli;
+use serde::{Deserialize, Serialize};
 
 /// Shape and number of nodes; the nodes are in the order of the VTK file format (`VTK_TRIANGLE`,
 /// `VTK_QUADRATIC_TRIANGLE`, …, `VTK_QUADRATIC_HEXAHEDRON`).
@@ -45,7 +46,9 @@ pub enum Idealisation {
 }
 
 /// A mend against locking: which part of the deformation gradient the energy sees as a mean over the element.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
 pub enum LockingMend {
     /// None: the energy at each quadrature point. Against shear and volumetric locking of quadratic elements the number
     /// of their points suffices; linear elements lock.
@@ -109,10 +112,7 @@ impl LockingMend {
         match kind {
             SolidKind::Triangle3 | SolidKind::Tetrahedron4 => Self::None,
             SolidKind::Quadrilateral4 | SolidKind::Hexahedron8 => Self::MeanGradient,
-            SolidKind::Triangle6
-            | SolidKind::Quadrilateral8
-            | SolidKind::Tetrahedron10
-            | SolidKind::Hexahedron20 => {
+            SolidKind::Triangle6 | SolidKind::Quadrilateral8 | SolidKind::Tetrahedron10 | SolidKind::Hexahedron20 => {
                 let has_free_thickness = matches!(idealisation, Idealisation::PlaneStress { .. });
                 if moduli.poisson() > NEARLY_INCOMPRESSIBLE && !has_free_thickness {
                     Self::MeanDilatation

@@ -21,16 +21,8 @@ pub struct ShapePoint<const N: usize, const D: usize> {
 pub const SEGMENT: [[f64; 1]; 3] = [[-1.0], [1.0], [0.0]];
 
 /// Natural coordinates of the nodes of a quadratic quadrilateral; the first four are the corners.
-pub const QUADRILATERAL: [[f64; 2]; 8] = [
-    [-1.0, -1.0],
-    [1.0, -1.0],
-    [1.0, 1.0],
-    [-1.0, 1.0],
-    [0.0, -1.0],
-    [1.0, 0.0],
-    [0.0, 1.0],
-    [-1.0, 0.0],
-];
+pub const QUADRILATERAL: [[f64; 2]; 8] =
+    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]];
 
 /// Natural coordinates of the nodes of a quadratic hexahedron; the first eight are the corners.
 pub const HEXAHEDRON: [[f64; 3]; 20] = [

@@ -41,10 +41,8 @@ fn deflection(kind: SolidKind, idealisation: Idealisation, poisson: f64, young: 
 
 #[test]
 fn bending_by_rectangles_is_exact() {
-    let [strain, stress] = [
-        Idealisation::PlaneStrain { thickness: THICKNESS },
-        Idealisation::PlaneStress { thickness: THICKNESS },
-    ];
+    let [strain, stress] =
+        [Idealisation::PlaneStrain { thickness: THICKNESS }, Idealisation::PlaneStress { thickness: THICKNESS }];
     for poisson in [0.0, 0.3, 0.4999] {
         let in_plane = YOUNG / (1.0 - poisson * poisson);
         for (kind, idealisation, young) in [

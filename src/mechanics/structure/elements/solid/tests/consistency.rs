@@ -80,9 +80,8 @@ fn a_rigid_motion_changes_nothing() {
             let (sin, cos) = if idealisation == Idealisation::Axisymmetric { (0.0, 1.0) } else { 2.2_f64.sin_cos() };
             let turned = |v: [f64; 3]| [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1], v[2]];
             let away = if idealisation == Idealisation::Axisymmetric { [0.0, 4.0, 0.0] } else { [3.0, 4.0, -2.0] };
-            let padded = |values: &[f64]| -> [f64; 3] {
-                std::array::from_fn(|axis| values.get(axis).copied().unwrap_or(0.0))
-            };
+            let padded =
+                |values: &[f64]| -> [f64; 3] { std::array::from_fn(|axis| values.get(axis).copied().unwrap_or(0.0)) };
             let motion = |of: &[f64]| -> Vec<f64> {
                 let nodes = of.chunks(dimension).zip(&positions);
                 nodes
@@ -100,7 +99,8 @@ fn a_rigid_motion_changes_nothing() {
             let (before, after) = (forces(element.as_ref(), &at), forces(element.as_ref(), &motion(&at)));
             for (before, after) in before.chunks(dimension).zip(after.chunks(dimension)) {
                 let (before, after) = (turned(padded(before)), padded(after));
-                (0..3).for_each(|axis| assert!((before[axis] - after[axis]).abs() <= 2e-13 * scale, "{kind:?} {mend:?}"));
+                (0..3)
+                    .for_each(|axis| assert!((before[axis] - after[axis]).abs() <= 2e-13 * scale, "{kind:?} {mend:?}"));
             }
         }
     }

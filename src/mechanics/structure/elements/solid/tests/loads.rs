@@ -5,9 +5,7 @@ use crate::mechanics::structure::elements::solid::SolidElement;
 use crate::mechanics::structure::elements::solid::loads::{
     body_force, dead_traction, pressure_force, write_pressure_stiffness,
 };
-use crate::mechanics::structure::elements::solid::shapes::faces::{
-    FaceKind, FacePositions, contact_weights, faces_of,
-};
+use crate::mechanics::structure::elements::solid::shapes::faces::{FaceKind, FacePositions, contact_weights, faces_of};
 use crate::mechanics::structure::elements::solid::shapes::kind::{Idealisation, SolidKind};
 use std::f64::consts::TAU;
 
@@ -90,7 +88,10 @@ fn a_pressure_all_around_does_the_work_of_the_volume() {
             let volume = volume_of(kind, idealisation, &positions);
             let around = idealisation == Idealisation::Axisymmetric;
             let powers = if around { 3.0 } else { dimension as f64 };
-            assert!((work + powers * volume).abs() <= 1e-12 * volume * powers, "{kind:?} {idealisation:?}: {work} {volume}");
+            assert!(
+                (work + powers * volume).abs() <= 1e-12 * volume * powers,
+                "{kind:?} {idealisation:?}: {work} {volume}"
+            );
             // Around an axis radial forces do not balance.
             let components = if around { 1..2 } else { 0..dimension };
             components.for_each(|axis| assert!(total[axis].abs() <= 1e-13 * volume.max(1.0), "{kind:?} {total:?}"));
@@ -130,8 +131,7 @@ fn volume_of(kind: SolidKind, idealisation: Idealisation, positions: &Positions)
                     for row in 0..$dimension {
                         for column in 0..$dimension {
                             let start = if node == 0 && row == column { 1.0 } else { 0.0 };
-                            jacobian[(row, column)] +=
-                                positions[node][row] * shape.gradients[node][column] - start;
+                            jacobian[(row, column)] += positions[node][row] * shape.gradients[node][column] - start;
                         }
                     }
                 }
@@ -231,5 +231,7 @@ fn body_forces_make_the_weight() {
         // The work in a homogeneous displacement is that of the centre.
         assert!(forces.iter().all(|force| force[0] == 0.0 && force[1] < 0.0));
     }
-    assert!(element(SolidKind::Quadrilateral4, &[0, 1, 2, 3], &[[0.0; 3]; 4], STRAIN, &neo_hookean(0.3), None).is_err());
+    assert!(
+        element(SolidKind::Quadrilateral4, &[0, 1, 2, 3], &[[0.0; 3]; 4], STRAIN, &neo_hookean(0.3), None).is_err()
+    );
 }

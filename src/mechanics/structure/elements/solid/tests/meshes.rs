@@ -75,8 +75,8 @@ pub fn element(
             let nodes: [usize; $count] = nodes.try_into().unwrap();
             let own = nodes.map(|node| std::array::from_fn(|axis| positions[node][axis]));
             let mend = mend.unwrap_or_else(|| LockingMend::usual(kind, idealisation, &material.moduli()));
-            let element = SolidElement::<$count, $dimension>::with_mend(
-                nodes, &own, idealisation, material.clone(), mend)?;
+            let element =
+                SolidElement::<$count, $dimension>::with_mend(nodes, &own, idealisation, material.clone(), mend)?;
             assert_eq!(element.kind(), kind);
             Ok(Box::new(element))
         }};
@@ -141,8 +141,7 @@ impl Mesh {
         let mut places: Vec<Vec<[usize; 3]>> = Vec::new();
         let (elements, edges) = cell(kind);
         let depth = if kind.dimension() == 2 { 1 } else { cells[2] };
-        for (i, j, k) in
-            (0..cells[0]).flat_map(|i| (0..cells[1]).flat_map(move |j| (0..depth).map(move |k| (i, j, k))))
+        for (i, j, k) in (0..cells[0]).flat_map(|i| (0..cells[1]).flat_map(move |j| (0..depth).map(move |k| (i, j, k))))
         {
             for corners in &elements {
                 let at = |corner: usize| {
@@ -162,9 +161,7 @@ impl Mesh {
                 places.push(nodes);
             }
         }
-        let place = |node: &[usize; 3]| {
-            map(std::array::from_fn(|axis| node[axis] as f64 / (2 * cells[axis]) as f64))
-        };
+        let place = |node: &[usize; 3]| map(std::array::from_fn(|axis| node[axis] as f64 / (2 * cells[axis]) as f64));
         let position = |(node, ends): (&[usize; 3], &Option<[[usize; 3]; 2]>)| match ends {
             Some(ends) if is_straight => {
                 let [one, other] = [place(&ends[0]), place(&ends[1])];

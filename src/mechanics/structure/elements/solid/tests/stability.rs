@@ -80,7 +80,17 @@ fn stretched(positions: &[[f64; 3]], dimension: usize, stretches: [f64; 3]) -> V
 
 /// Stretches of all kinds; around an axis the radius and the circumference are stretched alike.
 fn states(idealisation: Idealisation) -> Vec<[f64; 3]> {
-    let all = [[2.0; 3], [0.5; 3], [0.5, 1.4, 1.4], [2.0, 0.75, 0.75], [0.5, 1.0, 1.0], [1.4, 0.5, 1.4], [0.7, 0.7, 2.0], [0.5, 2.05, 1.0], [1.4, 0.52, 1.4]];
+    let all = [
+        [2.0; 3],
+        [0.5; 3],
+        [0.5, 1.4, 1.4],
+        [2.0, 0.75, 0.75],
+        [0.5, 1.0, 1.0],
+        [1.4, 0.5, 1.4],
+        [0.7, 0.7, 2.0],
+        [0.5, 2.05, 1.0],
+        [1.4, 0.52, 1.4],
+    ];
     let own = |[x, y, z]: [f64; 3]| [x, y, if idealisation == Idealisation::Axisymmetric { x } else { z }];
     all.into_iter().map(own).collect()
 }
@@ -98,7 +108,11 @@ fn mean_gradients_are_as_stable_as_the_material() {
                 let found = inertia(at.len(), &stiffness(element.as_ref(), &at), 1e-12)[0];
                 let of_material = unstable_directions(&material, idealisation, state);
                 // Around an axis the gradient of the stretch resists some of them.
-                let is_alike = if idealisation == Idealisation::Axisymmetric { found <= of_material } else { found == of_material };
+                let is_alike = if idealisation == Idealisation::Axisymmetric {
+                    found <= of_material
+                } else {
+                    found == of_material
+                };
                 assert!(is_alike, "{kind:?} {idealisation:?} {state:?}: {found} {of_material}");
             }
         }
@@ -114,11 +128,18 @@ fn held_at_the_boundary_every_homogeneous_state_is_stable() {
         for material in [neo_hookean(0.3), neo_hookean(0.4999)] {
             let solids = Solids::new(&mesh, idealisation, &material, Some(mend));
             let dimension = kind.dimension();
-            let free: Vec<usize> = (0..solids.freedoms).filter(|freedom| !mesh.is_outside(freedom / dimension)).collect();
+            let free: Vec<usize> =
+                (0..solids.freedoms).filter(|freedom| !mesh.is_outside(freedom / dimension)).collect();
             // Nearly incompressible, only where the pressure is not thousands of shear moduli.
             let is_near = |state: &[f64; 3]| {
-                let volume = if dimension == 2 && idealisation != Idealisation::Axisymmetric { state[0] * state[1] } else { state.iter().product() };
-                material.moduli().poisson() < 0.49 || (volume - 1.0_f64).abs() < 0.1 || matches!(idealisation, Idealisation::PlaneStress { .. })
+                let volume = if dimension == 2 && idealisation != Idealisation::Axisymmetric {
+                    state[0] * state[1]
+                } else {
+                    state.iter().product()
+                };
+                material.moduli().poisson() < 0.49
+                    || (volume - 1.0_f64).abs() < 0.1
+                    || matches!(idealisation, Idealisation::PlaneStress { .. })
             };
             for state in states(idealisation).into_iter().filter(is_near) {
                 let tangent = solids.dense_stiffness(&stretched(&mesh.positions, dimension, state), &free);

@@ -99,7 +99,9 @@ impl Solids {
             let mut of_element = vec![0.0; own.len() * own.len()];
             element.write_stiffness(&own, &mut of_element);
             for (row, values) in self.freedoms_of(element.as_ref()).zip(of_element.chunks(own.len())) {
-                self.freedoms_of(element.as_ref()).zip(values).for_each(|(column, value)| matrix.add(row, column, *value));
+                self.freedoms_of(element.as_ref())
+                    .zip(values)
+                    .for_each(|(column, value)| matrix.add(row, column, *value));
             }
         }
         matrix

@@ -1,0 +1,50 @@
+//! What a model's solids are made of, in the terms of mechanics.
+
+use crate::mechanics::structure::elements::materials::linear_elastic::LinearElastic;
+use crate::mechanics::structure::elements::materials::mooney_rivlin::MooneyRivlin;
+use crate::mechanics::structure::elements::materials::neo_hookean::NeoHookean;
+use crate::mechanics::structure::elements::materials::saint_venant_kirchhoff::SaintVenantKirchhoff;
+use crate::mechanics::structure::elements::materials::{self, ElasticModuli, MaterialError};
+use crate::mechanics::structure::elements::solid::shapes::kind::Idealisation;
+use crate::model::request::{ElasticConstants, Material, PlaneCondition, Solid};
+use std::sync::Arc;
+
+/// The material with stresses over `unit`.
+///
+/// # Errors
+///
+/// Where the constants make none; the message has them over `unit`.
+pub(crate) fn material(given: &Material, unit: f64) -> Result<Arc<dyn materials::Material>, MaterialError> {
+    let moduli = |constants: &ElasticConstants| ElasticModuli::from_young(constants.young / unit, constants.poisson);
+    Ok(match given {
+        Material::LinearElastic(constants) => Arc::new(LinearElastic { moduli: moduli(constants)? }),
+        Material::SaintVenantKirchhoff(constants) => Arc::new(SaintVenantKirchhoff { moduli: moduli(constants)? }),
+        Material::NeoHookean(constants) => Arc::new(NeoHookean { moduli: moduli(constants)? }),
+        Material::MooneyRivlin { c10, c01, bulk_modulus, .. } => {
+            Arc::new(MooneyRivlin::new(c10 / unit, c01 / unit, bulk_modulus / unit)?)
+        }
+    })
+}
+
+/// What holds in the third direction, with lengths over `unit`; in the plane strain is the condition that is not given.
+pub(crate) fn idealisation(solid: &Solid, dimension: usize, unit: f64) -> Idealisation {
+    let thickness = solid.thickness.unwrap_or(1.0) / unit;
+    match solid.plane {
+        _ if dimension == 3 => Idealisation::Space,
+        Some(PlaneCondition::Stress) => Idealisation::PlaneStress { thickness },
+        Some(PlaneCondition::Axisymmetric) => Idealisation::Axisymmetric,
+        Some(PlaneCondition::Strain) | None => Idealisation::PlaneStrain { thickness },
+    }
+}
+
+/// Places of nodes over `unit`, from the first one; of a body of revolution the radius stays what it is. Differences of the
+/// places as given: a place far from the origin causes no loss of digits.
+pub(crate) fn positions(given: &[&[f64]], idealisation: Idealisation, unit: f64) -> Vec<[f64; 3]> {
+    let first = given.first().copied().unwrap_or_default();
+    let is_radius = |axis: usize| axis == 0 && matches!(idealisation, Idealisation::Axisymmetric);
+    let component = |place: &[f64], axis: usize| {
+        let from = if is_radius(axis) { 0.0 } else { first.get(axis).copied().unwrap_or(0.0) };
+        (place.get(axis).copied().unwrap_or(0.0) - from) / unit
+    };
+    given.iter().map(|place| std::array::from_fn(|axis| component(place, axis))).collect()
+}
