@@ -1,7 +1,7 @@
 //! The same request said in another way: in other units, about other axes, in another order.
 
 use arcslip::model::JobRequest;
-use arcslip::model::request::{BendingStiffness, Element, Obstacle};
+use arcslip::model::request::{BendingStiffness, Element, Material, Obstacle};
 
 /// Rows of an orthogonal matrix.
 pub type Axes = [[f64; 3]; 3];
@@ -31,6 +31,21 @@ pub fn in_units(mut request: JobRequest, length: f64, force: f64) -> JobRequest 
                 shear_stiffness.iter_mut().for_each(|shear| *shear *= force);
             }
             Element::RotationalSpring { stiffness, .. } => *stiffness *= force * length,
+            solid => {
+                let thickness = solid.solid_mut().and_then(|solid| solid.thickness.as_mut());
+                thickness.into_iter().for_each(|thickness| *thickness *= length);
+            }
+        }
+    }
+    let stress = force / length / length;
+    for material in request.model.materials.values_mut() {
+        match material {
+            Material::LinearElastic(constants)
+            | Material::SaintVenantKirchhoff(constants)
+            | Material::NeoHookean(constants) => constants.young *= stress,
+            Material::MooneyRivlin { c10, c01, bulk_modulus, .. } => {
+                [c10, c01, bulk_modulus].into_iter().for_each(|constant| *constant *= stress);
+            }
         }
     }
     for obstacle in request.model.obstacles.values_mut() {
@@ -48,6 +63,8 @@ pub fn in_units(mut request: JobRequest, length: f64, force: f64) -> JobRequest 
     for stage in &mut request.model.stages {
         stage.forces.values_mut().for_each(|values| scale(values, force));
         stage.moments.values_mut().for_each(|moment| *moment *= force * length);
+        stage.body_forces.values_mut().for_each(|values| scale(values, stress / length));
+        stage.tractions.values_mut().for_each(|values| scale(values, stress));
         // A third component in the plane is a rotation.
         for values in stage.displacements.values_mut() {
             let dimension = request.model.dimension;

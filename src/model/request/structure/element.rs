@@ -315,6 +315,21 @@ impl Element {
         }
     }
 
+    /// The data of a solid, to be changed; `None` for other elements.
+    pub fn solid_mut(&mut self) -> Option<&mut Solid> {
+        match self {
+            Self::Bar { .. } | Self::Spring { .. } | Self::Beam { .. } | Self::RotationalSpring { .. } => None,
+            Self::Triangle3(solid)
+            | Self::Triangle6(solid)
+            | Self::Quadrilateral4(solid)
+            | Self::Quadrilateral8(solid)
+            | Self::Tetrahedron4(solid)
+            | Self::Tetrahedron10(solid)
+            | Self::Hexahedron8(solid)
+            | Self::Hexahedron20(solid) => Some(solid),
+        }
+    }
+
     /// A solid of a kind.
     pub fn of_solid(kind: SolidKind, solid: Solid) -> Self {
         match kind {
