@@ -52,6 +52,7 @@ mod sliders_at_their_folds;
 mod slip_ends_at_a_fold;
 mod slips_at_once;
 mod smooth_bifurcations;
+mod solids;
 mod space_beams;
 mod sparse_bifurcations;
 mod spatial;

@@ -2,7 +2,7 @@
 
 use crate::check::measure::Errors;
 use crate::output::parquet::sheet::{Cell, Kind, Sheet};
-use crate::output::table::{AXES, beam_forces, counts, point_kind, status};
+use crate::output::table::{AXES, beam_forces, counts, point_kind, status, stress_components};
 use crate::result::increment::{Diagnostics, Increment};
 use parquet::errors::Result;
 use std::io::Write;
@@ -85,6 +85,9 @@ impl PathTable {
                     let names = beam_forces(dimension).iter();
                     names.for_each(|name| add(&format!("{name}_at_{end}_node"), Kind::Number));
                 }
+                let stresses = stress_components(dimension).iter();
+                stresses.for_each(|component| add(&format!("stress_{component}"), Kind::Number));
+                add("von_mises", Kind::Number);
             }
             Self::Contacts => {
                 ["node", "obstacle", "status"].iter().for_each(|name| add(name, Kind::Text));
@@ -140,6 +143,8 @@ impl PathTable {
                     let values: Vec<f64> = state.ends.iter().flat_map(|ends| ends[end].values()).collect();
                     row.extend((0..beam_forces(dimension).len()).map(|place| Cell::from(values.get(place).copied())));
                 }
+                row.extend(components(state.stress.as_deref().unwrap_or_default(), stress_components(dimension).len()));
+                row.push(state.von_mises.into());
                 sheet.push(&row)
             }),
             Self::Contacts => increment.contacts.iter().try_for_each(|state| {

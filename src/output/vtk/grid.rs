@@ -2,7 +2,7 @@
 
 use crate::model::JobRequest;
 use crate::model::request::recorded_forces::{recorded_elements, recorded_supports};
-use crate::model::request::{Element, Record};
+use crate::model::request::{Element, Record, SolidKind};
 use crate::output::vtk::arrays::{DataArray, text_array};
 use std::collections::HashMap;
 
@@ -11,6 +11,20 @@ const VERTEX: u8 = 1;
 const LINE: u8 = 3;
 /// Of a beam of three nodes.
 const LINE_OF_SEVERAL: u8 = 4;
+
+/// The type of a solid's cell, whose nodes are in the same order.
+fn type_of_solid(kind: SolidKind) -> u8 {
+    match kind {
+        SolidKind::Triangle3 => 5,
+        SolidKind::Quadrilateral4 => 9,
+        SolidKind::Tetrahedron4 => 10,
+        SolidKind::Hexahedron8 => 12,
+        SolidKind::Triangle6 => 22,
+        SolidKind::Quadrilateral8 => 23,
+        SolidKind::Tetrahedron10 => 24,
+        SolidKind::Hexahedron20 => 25,
+    }
+}
 
 /// The nodes and elements of a model as a grid.
 #[derive(Debug, Clone)]
@@ -31,6 +45,7 @@ pub struct Grid {
     pub(super) has_bar_forces: bool,
     pub(super) has_spring_forces: bool,
     pub(super) has_beam_forces: bool,
+    pub(super) has_stresses: bool,
     /// What the path is called, written to every file.
     pub(super) branch: String,
 }
@@ -54,11 +69,13 @@ impl Grid {
             *end += nodes.len() as i64;
             Some(*end)
         });
-        let types = nodes.iter().map(|nodes| match nodes.len() {
-            1 => VERTEX,
-            2 => LINE,
-            _ => LINE_OF_SEVERAL,
-        });
+        let type_of = |element: &Element| match (element.solid(), element.nodes().len()) {
+            (Some((kind, _)), _) => type_of_solid(kind),
+            (None, 1) => VERTEX,
+            (None, 2) => LINE,
+            (None, _) => LINE_OF_SEVERAL,
+        };
+        let types = model.elements.iter().map(type_of);
         let recorded = recorded_elements(request);
         let has = |is: fn(&Element) -> bool| recorded.iter().any(|place| is(&model.elements[*place]));
         let named = request.analysis.record.as_ref().and_then(Record::named_contacts);
@@ -87,6 +104,7 @@ impl Grid {
             has_bar_forces: has(|element| matches!(element, Element::Bar { .. })),
             has_spring_forces: has(|element| matches!(element, Element::Spring { .. })),
             has_beam_forces: has(|element| matches!(element, Element::Beam { .. })),
+            has_stresses: has(|element| element.solid().is_some()),
             place_of_node,
             branch: branch.into(),
         }

@@ -175,7 +175,27 @@ impl Grid {
         if self.has_spring_forces {
             arrays.push(DataArray::numbers("spring_force", 3, &forces));
         }
+        if self.has_stresses {
+            arrays.extend(self.stress_arrays(increment));
+        }
         arrays
+    }
+
+    /// Stresses in the order of a symmetric tensor of VTK: `xx`, `yy`, `zz`, `xy`, `yz`, `xz`.
+    fn stress_arrays(&self, increment: &Increment) -> [DataArray; 2] {
+        let cells = self.number_of_elements;
+        let (mut stresses, mut equivalent) = (vec![f64::NAN; 6 * cells], vec![f64::NAN; cells]);
+        for state in &increment.elements {
+            let (Ok(place), Some(stress)) = (usize::try_from(state.element), &state.stress) else { continue };
+            if let Some(cell) = stresses.get_mut(6 * place..6 * place + 6) {
+                cell.fill(0.0);
+                cell.iter_mut().zip(stress).for_each(|(own, value)| *own = *value);
+            }
+            if let (Some(cell), Some(value)) = (equivalent.get_mut(place), state.von_mises) {
+                *cell = value;
+            }
+        }
+        [DataArray::numbers("stress", 6, &stresses), DataArray::numbers("von_mises", 1, &equivalent)]
     }
 }
 

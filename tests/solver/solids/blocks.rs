@@ -1,0 +1,99 @@
+//! A block on a rough plane, pressed and then pushed: all of it slips at `Q = μ N` exactly, on any mesh, and every node's
+//! slip before that is an event.
+
+use crate::common::paths::request;
+use crate::solids::meshes::Mesh;
+use crate::solids::trace;
+use arcslip::result::increment::{Increment, Status};
+use arcslip::result::stop_reason::StopReason;
+use serde_json::{Value, json};
+
+const FRICTION: f64 = 0.3;
+const PRESS: f64 = 0.1;
+
+/// A block of 4 by 1 (in space by 1) under a pressure that holds, pushed by a traction on its top.
+pub fn block(mesh: &Mesh, material: &Value, data: &Value) -> Value {
+    let up = mesh.dimension() - 1;
+    let area = 4.0;
+    let mut model = mesh.model(material.clone(), data);
+    model["surfaces"] = json!({"top": {"faces": mesh.faces(up, true)}});
+    let along = |axis: usize, size: f64| {
+        let mut vector = vec![0.0; up + 1];
+        vector[axis] = size;
+        vector
+    };
+    model["obstacles"] = json!({"floor": {"kind": "plane", "point": along(0, 0.0), "normal": along(up, 1.0)}});
+    let contact = |node: String| json!({"node": node, "obstacle": "floor", "friction": FRICTION});
+    model["contacts"] = mesh.side(up, false).into_iter().map(contact).collect();
+    model["stages"] = json!([
+        {"name": "press", "tractions": {"top": along(up, -PRESS / area)}, "until": {"load_above": 1}},
+        {"name": "push", "tractions": {"top": along(0, 1.0 / area)}}
+    ]);
+    json!({"model": model})
+}
+
+fn sizes(point: [f64; 3]) -> [f64; 3] {
+    [4.0 * point[0], point[1], point[2]]
+}
+
+/// Every change of a contact's status between increments stands at a located event.
+fn changes_are_events(increments: &[Increment]) {
+    for pair in increments.windows(2) {
+        for (before, after) in pair[0].contacts.iter().zip(&pair[1].contacts) {
+            let changed = before.status != after.status;
+            assert!(
+                !changed || pair[0].point.event.is_some() || pair[1].point.event.is_some(),
+                "{} changes from {:?} to {:?} without an event at increment {}",
+                after.node,
+                before.status,
+                after.status,
+                pair[1].index
+            );
+        }
+    }
+}
+
+fn follow(what: &str, model: &Value) {
+    let (increments, report) = trace(&request(&model.to_string()));
+    assert_eq!(report.stop_reason, StopReason::Mechanism, "{what}: {report:?}");
+    let last = increments.last().expect("an end");
+    assert_eq!(&*last.stage, "push");
+    let error = (last.load_factor / (FRICTION * PRESS) - 1.0).abs();
+    println!("{what}: {} increments, full slip at μN within {error:.1e}", increments.len());
+    assert!(error < 1e-12, "{what}: full slip at {}", last.load_factor);
+    let normal: f64 = last.contacts.iter().map(|contact| contact.normal_reaction).sum();
+    assert!((normal / PRESS - 1.0).abs() < 1e-11, "{what}: {normal}");
+    let at_limit = |contact: &&arcslip::result::increment::ContactState| contact.status != Status::Free;
+    for contact in last.contacts.iter().filter(at_limit) {
+        let size = contact.tangential_reaction.iter().map(|value| value * value).sum::<f64>().sqrt();
+        assert!((size - FRICTION * contact.normal_reaction).abs() < 1e-9 * PRESS, "{what}: {contact:?}");
+    }
+    changes_are_events(&increments);
+}
+
+#[test]
+fn a_block_slips_at_coulombs_limit_on_any_mesh_in_the_plane() {
+    let material = json!({"kind": "linear_elastic", "young": 100, "poisson": 0.3});
+    for (kind, cells) in [("quadrilateral4", [8, 2]), ("quadrilateral4", [16, 4]), ("triangle3", [10, 3])] {
+        let mesh = Mesh::new(kind, &cells, sizes);
+        follow(&format!("{kind} {cells:?}"), &block(&mesh, &material, &json!({"plane": "strain"})));
+    }
+    for kind in ["quadrilateral8", "triangle6"] {
+        let mesh = Mesh::new(kind, &[6, 2], sizes);
+        follow(kind, &block(&mesh, &material, &json!({"plane": "stress"})));
+    }
+    let rubber = json!({"kind": "neo_hookean", "young": 2, "poisson": 0.45});
+    let mesh = Mesh::new("quadrilateral4", &[8, 3], sizes);
+    follow("neo-Hookean", &block(&mesh, &rubber, &json!({"plane": "strain"})));
+}
+
+/// Without lateral strain all nodes slip straight ahead; with it, directions only tend to the load's as the block moves on,
+/// and the load to `μ N`.
+#[test]
+fn a_block_slips_at_coulombs_limit_in_space() {
+    let material = json!({"kind": "linear_elastic", "young": 100, "poisson": 0});
+    for (kind, cells) in [("hexahedron8", [3, 1, 1]), ("hexahedron8", [4, 2, 2]), ("tetrahedron4", [3, 1, 1])] {
+        let mesh = Mesh::new(kind, &cells, sizes);
+        follow(&format!("{kind} {cells:?}"), &block(&mesh, &material, &json!({})));
+    }
+}

@@ -1,0 +1,114 @@
+//! Contact of solids with rigid obstacles against published tables and closed forms.
+
+use crate::common::paths::request;
+use crate::solids::meshes::{Mesh, hold, name};
+use crate::solids::trace;
+use arcslip::result::increment::{ContactState, Increment, Status};
+use arcslip::result::stop_reason::StopReason;
+use serde_json::{Value, json};
+use std::f64::consts::PI;
+
+/// Code_Aster's SSNV128: a plate of 40 mm on a rigid plane with μ = 1, pressed from above and from the side `x = 0`. The
+/// displacements of the contact line are published to 5 % (manual v6.04.128).
+#[test]
+fn a_plate_on_a_rough_plane_moves_as_published() {
+    let side = 0.04;
+    let mesh = Mesh::new("quadrilateral4", &[32, 32], |[x, y, _]| [side * x, side * y, 0.0]);
+    let mut model =
+        mesh.model(json!({"kind": "linear_elastic", "young": 1.3e11, "poisson": 0.2}), &json!({"plane": "strain"}));
+    hold(&mut model, &mesh.side(0, true), &["x"]);
+    model["surfaces"] = json!({"top": {"faces": mesh.faces(1, true)}, "left": {"faces": mesh.faces(0, false)}});
+    model["obstacles"] = json!({"plane": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}});
+    let contact = |node: String| json!({"node": node, "obstacle": "plane", "friction": 1});
+    model["contacts"] = mesh.side(1, false).into_iter().map(contact).collect();
+    model["stages"] = json!([{"name": "press", "tractions": {"top": [0, -5e7], "left": [15e7, 0]},
+        "until": {"load_above": 1}}]);
+    let (increments, report) = trace(&request(&json!({"model": model}).to_string()));
+    assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{report:?}");
+    let last = increments.last().expect("an end");
+    // Every 1.25 mm is a node.
+    let published = [(0, 2.86e-5), (1, 2.72e-5), (4, 2.28e-5), (6, 1.98e-5), (9, 1.50e-5)];
+    for (place, along) in published {
+        let found = last.displacements[&*name(&[2 * place, 0, 0])][0];
+        println!("x = {:5.2} mm: {:.3e} m, published {along:.2e}", 1.25 * place as f64, found);
+        assert!((found / along - 1.0).abs() < 0.05, "{place}: {found}");
+    }
+}
+
+/// Half the width of the block under the cylinder, and its depth, in half widths of the contact.
+fn env(name: &str, or: f64) -> f64 { std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(or) }
+static EXTENT: std::sync::LazyLock<f64> = std::sync::LazyLock::new(|| env("X_EXTENT", 60.0));
+static RADIUS: std::sync::LazyLock<f64> = std::sync::LazyLock::new(|| env("X_*RADIUS", 100.0));
+const FRICTION: f64 = 0.5;
+
+/// A rigid cylinder pressed into an elastic block and pushed sideways; incompressible, so that normal and tangential
+/// tractions do not act on each other. The half width of the contact is about 1.
+fn cylinder_on_block(cells: usize) -> Value {
+    let graded = |t: f64| *EXTENT * (6.0 * t).sinh() / 6.0_f64.sinh();
+    let mesh =
+        Mesh::new("quadrilateral4", &[2 * cells, cells], |[x, y, _]| [graded(2.0 * x - 1.0), -graded(1.0 - y), 0.0]);
+    let mut model =
+        mesh.model(json!({"kind": "linear_elastic", "young": 1, "poisson": env("X_POISSON", 0.4999)}), &json!({"plane": "strain"}));
+    hold(&mut model, &mesh.side(1, false), &["x", "y"]);
+    model["obstacles"] = json!({"cylinder": {"kind": "ball", "center": [0, *RADIUS], "radius": *RADIUS}});
+    let near = |node: &String| model["nodes"][node][0].as_f64().is_some_and(|x| x.abs() < 2.0);
+    let contact = |node: String| json!({"node": node, "obstacle": "cylinder", "friction": FRICTION});
+    model["contacts"] = mesh.side(1, true).into_iter().filter(near).map(contact).collect();
+    model["stages"] = json!([
+        {"name": "press", "obstacle_motion": {"cylinder": [0, -2.5 / *RADIUS]}, "until": {"load_above": 1}},
+        {"name": "push", "obstacle_motion": {"cylinder": [0.6 / *RADIUS, 0]}, "until": {"load_above": 1}}
+    ]);
+    json!({"model": model})
+}
+
+/// Sums over the contacts of a force times a power of the place.
+fn moment(model: &Value, contacts: &[ContactState], of: impl Fn(&ContactState) -> f64, power: i32) -> f64 {
+    let place = |contact: &ContactState| model["model"]["nodes"][&*contact.node][0].as_f64().unwrap_or(f64::NAN);
+    contacts.iter().map(|contact| of(contact) * place(contact).powi(power)).sum()
+}
+
+/// Half widths of contact and of stick by the second moments of the tractions of Hertz, `P a²/4`, and of Cattaneo and
+/// Mindlin, `μ P (a² - c⁴/a²)/4`, with the loads.
+struct Widths {
+    press: f64,
+    contact: f64,
+    push: f64,
+    stick: f64,
+}
+
+fn widths(model: &Value, increment: &Increment) -> Widths {
+    let press = moment(model, &increment.contacts, |contact| contact.normal_reaction, 0);
+    let contact = 2.0 * (moment(model, &increment.contacts, |contact| contact.normal_reaction, 2) / press).sqrt();
+    let along = |contact: &ContactState| -contact.tangential_reaction[0];
+    let push = moment(model, &increment.contacts, along, 0);
+    let share = 4.0 * moment(model, &increment.contacts, along, 2) / (FRICTION * press * contact * contact);
+    Widths { press, contact, push, stick: contact * (1.0 - share).powf(0.25) }
+}
+
+#[test]
+fn a_rigid_cylinder_on_a_block_follows_hertz_and_cattaneo_and_mindlin() {
+    let modulus = 1.0 / (1.0 - env("X_POISSON", 0.4999).powi(2));
+    for cells in [env("X_CELLS", 24.0) as usize] {
+        let model = cylinder_on_block(cells);
+        let (increments, report) = trace(&request(&model.to_string()));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{report:?}");
+        let pressed = increments.iter().rev().find(|increment| &*increment.stage == "press").expect("pressed");
+        let Widths { press, contact, .. } = widths(&model, pressed);
+        let hertz = (4.0 * press * *RADIUS / (PI * modulus)).sqrt();
+        let last = increments.last().expect("an end");
+        let pushed = widths(&model, last);
+        let ratio = pushed.push / (FRICTION * pushed.press);
+        let stick = (1.0 - ratio).sqrt();
+        let sticking = last.contacts.iter().filter(|contact| contact.status == Status::Stick).count();
+        println!(
+            "{cells} cells: P {press:.6} then {:.6}, {} increments, half width {contact:.5}, Hertz {hertz:.5}; Q/(μP) {ratio:.4}, stick/contact \
+             {:.5}, Cattaneo {stick:.5}; {sticking} nodes stick",
+            pushed.press,
+            increments.len(),
+            pushed.stick / pushed.contact
+        );
+        let bar = 0.25 / cells as f64;
+        assert!((contact / hertz - 1.0).abs() < bar, "{contact} {hertz}");
+        assert!((pushed.stick / pushed.contact / stick - 1.0).abs() < 2.0 * bar, "{stick}");
+    }
+}
