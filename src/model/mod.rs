@@ -12,8 +12,7 @@ pub mod mesh;
 pub mod request;
 pub mod run_mistakes;
 pub mod runs;
-pub(crate) mod solid_data;
-pub(crate) mod solid_faces;
+pub(crate) mod solids;
 mod template;
 
 pub use input::error::{InputError, InputErrors};

@@ -24,11 +24,11 @@ fn a_deck_becomes_a_model() {
         "nodes": {"1": [0.0, 0.0], "2": [1.0, 0.0], "3": [1.0, 1.0], "4": [0.0, 1.0]},
         "materials": {"Rubber": {"kind": "neo_hookean", "young": 2.25, "poisson": 0.125, "density": 3.0}},
         "elements": [{
-            "kind": "quadrilateral4", "name": "12", "nodes": ["1", "2", "3", "4"], "material": "Rubber",
+            "kind": "quadrilateral4", "name": "e12", "nodes": ["1", "2", "3", "4"], "material": "Rubber",
             "plane": "strain", "thickness": 0.5
         }],
         "surfaces": {"top": {"faces": [["3", "4"]]}},
-        "sets": {"low": {"nodes": ["1", "2"]}, "body": {"elements": ["12"]}},
+        "sets": {"low": {"nodes": ["1", "2"]}, "body": {"elements": ["e12"]}},
         "stages": [{"name": "loads"}]
     });
     assert_eq!(model, expected);

@@ -1,12 +1,13 @@
 //! Forces and strain energy of the posted elements, for the measure only.
 
 use crate::check::measure::beams::{BeamResponse, MeasuredBeam};
+use crate::check::measure::solids::{MeasuredSolid, SolidResponse};
 use crate::check::measure::space_beams::MeasuredSpaceBeam;
 use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::model::request::{Element as Posted, Model, Strain};
 
 /// An element with its nodes numbered; beams are in `beams`.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) enum MeasuredElement {
     Bar {
         ends: [usize; 2],
@@ -35,6 +36,7 @@ pub(super) enum MeasuredElement {
         /// Moment per angle.
         stiffness: f64,
     },
+    Solid(Box<MeasuredSolid>),
 }
 
 /// What an element does to its nodes.
@@ -51,6 +53,7 @@ pub(super) enum MeasuredResponse {
         rounding: f64,
         energy: f64,
     },
+    Solid(Box<SolidResponse>),
 }
 
 impl MeasuredResponse {
@@ -59,6 +62,7 @@ impl MeasuredResponse {
             Self::Forces(response) => response.energy,
             Self::Beam(response) => response.energy,
             Self::Moment { energy, .. } => *energy,
+            Self::Solid(response) => response.energy,
         }
     }
 }
@@ -107,7 +111,10 @@ impl MeasuredElement {
                 let other = nodes.get(1).map(|name| index(name).ok_or(())).transpose().ok()?;
                 Some(Self::Spring { node: index(nodes.first()?)?, other, stiffness: [row(0), row(1), row(2)] })
             }
-            _ => None,
+            _ => {
+                let (kind, solid) = posted.solid()?;
+                Some(Self::Solid(Box::new(MeasuredSolid::new(model, kind, solid)?)))
+            }
         }
     }
 
@@ -119,6 +126,7 @@ impl MeasuredElement {
             Self::Beam(beam) => beam.stiffness(),
             Self::SpaceBeam(beam) => beam.stiffness(),
             Self::RotationalSpring { .. } => 0.0,
+            Self::Solid(solid) => solid.stiffness(),
         }
     }
 
@@ -127,6 +135,7 @@ impl MeasuredElement {
         MeasuredResponse::Forces(match self {
             Self::Beam(beam) => return MeasuredResponse::Beam(Box::new(beam.response(u, rotations))),
             Self::SpaceBeam(beam) => return MeasuredResponse::Beam(Box::new(beam.response(u, rotations))),
+            Self::Solid(solid) => return MeasuredResponse::Solid(Box::new(solid.response(u))),
             Self::RotationalSpring { node, other, stiffness } => {
                 let turn = rotations[*node].z - other.map_or(0.0, |other| rotations[other].z);
                 let turned = rotations[*node].z.abs().max(other.map_or(0.0, |other| rotations[other].z.abs()));

@@ -1,7 +1,7 @@
 //! Checks the balance of the whole structure, and the forces that an increment reports.
 //!
-//! All bars and nodes together are in equilibrium under the forces from outside: supports, loads, contacts, and springs,
-//! which do not follow rotation and may exert couples.
+//! All elements and nodes together are in equilibrium under the forces from outside: supports, loads, contacts, and springs
+//! and solids of small strains, which do not follow rotation and may exert couples.
 //!
 //! ```text
 //! Σ F = 0,   Σ (x - c) × F = 0,   x: deformed position of the node,  c: centre of the box around the undeformed nodes
@@ -11,8 +11,10 @@ use crate::check::measure::beams::BeamResponse;
 use crate::check::measure::elements::MeasuredResponse;
 use crate::check::measure::errors::{Errors, worse};
 use crate::check::measure::posted::{Posted, PostedLoading};
+use crate::check::measure::solids::SolidResponse;
 use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::result::increment::{BeamEndForces, ElementState, Increment};
+use nalgebra::Matrix3 as MeasuredTensor;
 
 /// Error of a sum of products of rounded numbers, in units of the machine epsilon.
 const ROUNDINGS: f64 = 64.0;
@@ -56,6 +58,9 @@ impl Balance {
             let size = sum.iter().copied().fold(0.0, |size, value| worse(size, value.abs()));
             size - size.min(allowed)
         };
+        if posted.is_revolved {
+            return beyond(&MeasuredVector::new(0.0, self.force.y, 0.0), of_forces) / force;
+        }
         worse(beyond(&self.force, of_forces) / force, beyond(&self.moment, of_moments) / (force * extent))
     }
 }
@@ -92,6 +97,11 @@ pub(super) fn judge_element(
             errors.reported = worse(errors.reported, off / force_scale);
             return;
         }
+        MeasuredResponse::Solid(response) => {
+            let off = off_stress(state, response, dimension).unwrap_or(f64::INFINITY) * response.area;
+            errors.reported = worse(errors.reported, (off - response.rounding.min(off)) / force_scale);
+            return;
+        }
         MeasuredResponse::Moment { moment, rounding, .. } => {
             let off = state.moment.map_or(f64::INFINITY, |reported| (reported - moment.z).abs());
             errors.reported = worse(errors.reported, (off - rounding.min(off)) / (force_scale * length));
@@ -106,6 +116,18 @@ pub(super) fn judge_element(
         _ => f64::INFINITY,
     };
     errors.reported = worse(errors.reported, (off - response.rounding.min(off)) / force_scale);
+}
+
+/// The largest error of what is reported of a solid's stress; `None` where it has not as many components.
+fn off_stress(state: &ElementState, response: &SolidResponse, dimension: usize) -> Option<f64> {
+    let stress = &response.stress;
+    let all = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];
+    let expected = &all[..if dimension == 2 { 4 } else { 6 }];
+    let reported = state.stress.as_ref().filter(|reported| reported.len() == expected.len())?;
+    let off = reported.iter().zip(expected).map(|(value, place)| (value - stress[*place]).abs());
+    let deviator = stress - MeasuredTensor::identity() * (stress.trace() / 3.0);
+    let equivalent = (1.5 * deviator.dot(&deviator)).sqrt();
+    Some(off.fold((state.von_mises? - equivalent).abs(), worse))
 }
 
 /// The largest error of what is reported of a beam's ends beyond rounding, as a force.

@@ -12,7 +12,7 @@
 //! reported        |gap - g|/ℓ, |slip - Tᵀ(Δu - Δd)|/ℓ, |slip_total - sum of slips|/ℓ;
 //!                 free: max(|r_n|, |r_t|)/F;   stick: |x|;   slip: ||r_t| - μ r_n|/F;
 //!                 |force - force of the displacements|/F of contacts in global axes, elements, loads, free components
-//!                 of supports
+//!                 of supports;  |σ - stress of the displacements| V/(ℓ_e F) of a solid of volume V and size ℓ_e
 //! global_equilibrium  |Σ F|/F, |Σ (x - c) × F|/(F × extent) over supports, loads, contacts and springs
 //! arc_length      |a - step| / max(1, a),  a = ‖(Δu/ℓ, Δs/σ)‖;   |arc_length - A| / max(1, A),
 //!                 A = arc_length before + step
@@ -25,7 +25,7 @@
 //! Errors of a gap, a slip or a balance of forces that are due to the rounding of the published numbers do not count.
 //! With the machine epsilon `ε`, this rounding error is `16 ε` times the largest coordinate, displacement or radius for
 //! a gap or a slip, `16 ε` times `EA/L0 max(1, L/L0)²` times the largest displacement for a bar, and `16 ε` times the
-//! largest row sum of `|K|` times the largest displacement for a spring. The rounding errors of forces matter only for
+//! largest row sum of `|K|` times the largest displacement for a spring, `64 ε` times a bound on the row sums for a solid. The rounding errors of forces matter only for
 //! large motions of stiff elements.
 //!
 //! Reactions in global axes, sums of slips, forces of elements, supports and loads are judged where the increment has them;
@@ -46,7 +46,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `errors` | the errors and their maxima |
-//! | `posted`, `elements`, `beams`, `space_beams`, `dual_number`, `obstacles`, `vector` | the posted model, with indices instead of names |
+//! | `posted`, `elements`, `beams`, `space_beams`, `solids`, `dual_number`, `obstacles`, `vector` | the posted model, with indices instead of names |
 //! | `contacts` | the check of one contact |
 //! | `global` | the balance of the whole structure, and the forces as reported |
 //! | `rows`, `apart` | the contacts with a row in an increment, and the contacts without a row |
@@ -63,6 +63,7 @@ pub(crate) mod history;
 pub(crate) mod obstacles;
 pub(crate) mod posted;
 pub(crate) mod rows;
+pub(crate) mod solids;
 pub(crate) mod space_beams;
 pub(crate) mod vector;
 
@@ -132,8 +133,8 @@ struct Workspace {
 }
 
 impl Workspace {
-    /// Adds the forces and moments of a beam or a rotational spring to its nodes; returns the largest, as a force.
-    fn add_turning(&mut self, response: &MeasuredResponse, outside: &mut Balance, length: f64) -> f64 {
+    /// Adds the forces and moments of a beam, a rotational spring or a solid to its nodes; returns the largest, as a force.
+    fn add_nodal(&mut self, response: &MeasuredResponse, outside: &mut Balance, length: f64) -> f64 {
         let mut most = 0.0_f64;
         let add_moment =
             |moments: &mut Vec<(MeasuredVector, f64)>, node: usize, moment: MeasuredVector, rounding: f64| {
@@ -143,6 +144,18 @@ impl Workspace {
             };
         match response {
             MeasuredResponse::Forces(_) => {}
+            MeasuredResponse::Solid(response) => {
+                for (node, force) in response.nodes.iter().zip(&response.forces) {
+                    self.balance[*node] += force;
+                    self.rounding[*node] += response.rounding;
+                    outside.between(force);
+                    if response.is_small {
+                        // In equilibrium where it was drawn: at the deformed places a couple remains.
+                        outside.add_moment(-self.displacements[*node].cross(force));
+                    }
+                    most = most.max(largest(force));
+                }
+            }
             MeasuredResponse::Beam(response) => {
                 self.rotations.extend(response.released.iter().flatten().map(|turn| MeasuredVector::z() * *turn));
                 for share in response.nodes.iter().flatten() {
@@ -321,7 +334,7 @@ impl Judge {
                     response
                 }
                 turning => {
-                    most = most.max(work.add_turning(&turning, &mut outside, self.length));
+                    most = most.max(work.add_nodal(&turning, &mut outside, self.length));
                     if is_recorded {
                         work.responses.push(turning);
                     }

@@ -2,8 +2,9 @@
 
 use crate::check::measure::elements::MeasuredElement;
 use crate::check::measure::obstacles::{MeasuredFrame, MeasuredObstacle};
+use crate::check::measure::solids::solid_loads;
 use crate::check::measure::vector::{MeasuredVector, largest, padded};
-use crate::model::request::{JobRequest, Model};
+use crate::model::request::{JobRequest, Model, PlaneCondition};
 use indexmap::{IndexMap, IndexSet};
 
 #[derive(Debug, Clone)]
@@ -22,6 +23,8 @@ pub(super) struct Posted {
     /// Number of obstacles that move in some stage.
     pub moving: usize,
     pub stages: Vec<PostedStage>,
+    /// Whether solids are bodies of revolution, whose radial forces balance around the axis and not in the plane.
+    pub is_revolved: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -101,7 +104,10 @@ impl Posted {
         let scales = load_scales.iter().copied().chain(std::iter::repeat(1.0));
         let stage = |(stage, load_scale): (&crate::model::request::Stage, f64)| PostedStage {
             name: stage.name.clone(),
-            forces: pattern(&stage.forces, &|name| model.nodes.get_index_of(name)),
+            forces: pattern(&stage.forces, &|name| model.nodes.get_index_of(name))
+                .into_iter()
+                .chain(solid_loads(model, stage))
+                .collect(),
             moments: numbered(model, stage.moments.iter().map(|(name, moment)| (name, MeasuredVector::z() * *moment))),
             displacements: pattern(&stage.displacements, &|name| model.nodes.get_index_of(name))
                 .into_iter()
@@ -129,6 +135,11 @@ impl Posted {
             obstacles: model.obstacles.values().map(MeasuredObstacle::new).collect(),
             contacts: model.contacts.iter().filter_map(contact).collect(),
             moving: moving.len(),
+            is_revolved: model
+                .elements
+                .iter()
+                .filter_map(|element| element.solid())
+                .any(|(_, solid)| solid.plane == Some(PlaneCondition::Axisymmetric)),
             stages: model.stages.iter().zip(scales).map(stage).collect(),
         }
     }

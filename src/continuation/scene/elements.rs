@@ -11,7 +11,7 @@ use crate::mechanics::structure::elements::space_beam::segment::SpaceSectionStif
 use crate::mechanics::structure::elements::spring::Spring;
 use crate::model::Model;
 use crate::model::request::{BendingStiffness, Element};
-use crate::model::solid_data;
+use crate::model::solids::data;
 use std::collections::HashMap;
 
 /// Builds the elements of a model, one after the other.
@@ -56,12 +56,12 @@ impl<'a> ElementBuilder<'a> {
     pub fn solid(&self, element: &Element) -> Option<AnySolid> {
         let (kind, solid) = element.solid()?;
         let stress = self.force / self.length / self.length;
-        let material = solid_data::material(self.model.materials.get(&solid.material)?, stress).ok()?;
-        let idealisation = solid_data::idealisation(solid, self.model.dimension, self.length);
+        let material = data::material(self.model.materials.get(&solid.material)?, stress).ok()?;
+        let idealisation = data::idealisation(solid, self.model.dimension, self.length);
         let places: Vec<&[f64]> = solid.nodes.iter().map(|node| self.model.nodes[node].as_slice()).collect();
         let nodes: Vec<usize> = solid.nodes.iter().map(|node| self.numbers[node.as_str()]).collect();
         let data = SolidData { kind, idealisation, material, mend: solid.locking };
-        AnySolid::new(&data, &nodes, &solid_data::positions(&places, idealisation, self.length)).ok()
+        AnySolid::new(&data, &nodes, &data::positions(&places, idealisation, self.length)).ok()
     }
 
     /// From one node to another. A difference of the places as given: a place far from the origin causes no loss of

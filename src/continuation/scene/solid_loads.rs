@@ -4,8 +4,8 @@ use crate::continuation::scene::build::{ScaledModel, norm};
 use crate::continuation::scene::elements::ElementBuilder;
 use crate::mechanics::structure::elements::solid::any::each_traction_force;
 use crate::model::request::{Element, Stage};
-use crate::model::solid_data;
-use crate::model::solid_faces::{FaceMatch, SolidFace, surface_faces};
+use crate::model::solids::data;
+use crate::model::solids::faces::{FaceMatch, SolidFace, surface_faces};
 use indexmap::IndexMap;
 
 /// Calls `each` with the name of a load, node and force, in the user's units, of the body forces and tractions of a stage.
@@ -43,9 +43,9 @@ fn traction_forces(
 ) {
     let model = scaled.model;
     let Some((_, solid)) = model.elements.get(face.element).and_then(Element::solid) else { return };
-    let idealisation = solid_data::idealisation(solid, model.dimension, 1.0);
+    let idealisation = data::idealisation(solid, model.dimension, 1.0);
     let places: Vec<&[f64]> = face.nodes.iter().map(|node| model.nodes[*node].as_slice()).collect();
-    let positions = solid_data::positions(&places, idealisation, 1.0);
+    let positions = data::positions(&places, idealisation, 1.0);
     each_traction_force(face.kind, &positions, idealisation, traction, &mut |place, force| {
         each(face.nodes[place], force);
     });

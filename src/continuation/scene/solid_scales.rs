@@ -12,7 +12,7 @@ use crate::continuation::scene::scales::{MOST_STAGES, RequestScales, expected_lo
 use crate::mechanics::structure::Structure;
 use crate::model::check::scope::size;
 use crate::model::request::{Analysis, Material, Model};
-use crate::model::solid_data;
+use crate::model::solids::data;
 use std::collections::HashMap;
 
 /// Young's modulus of each solid times its volume, over the size of the structure: a force; 0 without solids.
@@ -21,7 +21,7 @@ fn stretching_force(model: &Model, numbers: &HashMap<&str, usize>) -> f64 {
     let mut sum = 0.0;
     for element in &model.elements {
         let Some((_, solid)) = element.solid() else { continue };
-        let young = |material: &Material| Some(solid_data::material(material, 1.0).ok()?.moduli().young());
+        let young = |material: &Material| Some(data::material(material, 1.0).ok()?.moduli().young());
         let young = model.materials.get(&solid.material).and_then(young).unwrap_or(0.0);
         sum += young * builder.solid(element).map_or(0.0, |built| built.volume());
     }

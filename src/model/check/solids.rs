@@ -9,8 +9,8 @@ use crate::model::check::structure::distinct_nodes;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{quoted, suggestion};
 use crate::model::request::{ElasticConstants, Element, Material, PlaneCondition, Solid, Stage};
-use crate::model::solid_data;
-use crate::model::solid_faces::{FaceMatch, surface_faces};
+use crate::model::solids::data;
+use crate::model::solids::faces::{FaceMatch, surface_faces};
 
 pub(super) fn materials(scope: &Scope, mistakes: &mut Mistakes) {
     let at = scope.at.member("materials");
@@ -83,9 +83,9 @@ pub(super) fn solid(scope: &Scope, kind: SolidKind, solid: &Solid, at: &Document
     let positions: Option<Vec<&[f64]>> = nodes.iter().map(|node| scope.position(*node)).collect();
     let Some(positions) = positions else { return };
     // Constants that make no material have been reported.
-    let Ok(material) = solid_data::material(material, 1.0) else { return };
-    let idealisation = solid_data::idealisation(solid, dimension, 1.0);
-    let positions = solid_data::positions(&positions, idealisation, 1.0);
+    let Ok(material) = data::material(material, 1.0) else { return };
+    let idealisation = data::idealisation(solid, dimension, 1.0);
+    let positions = data::positions(&positions, idealisation, 1.0);
     let data = SolidData { kind, idealisation, material, mend: solid.locking };
     if let Err(error) = AnySolid::new(&data, &nodes, &positions) {
         let at = match error {

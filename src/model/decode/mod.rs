@@ -7,6 +7,7 @@ mod analysis;
 mod follow;
 mod model;
 mod reader;
+mod sets;
 mod solids;
 mod study;
 mod sweep;
@@ -17,6 +18,7 @@ use crate::model::input::json::Json;
 use crate::model::input::mistakes::Mistakes;
 use crate::model::{FollowRequest, InputError, InputErrors, JobRequest, StudyRequest};
 use reader::{Fields, Input, Object};
+pub use sets::expand_sets;
 
 const JOB_REQUEST: Fields = Fields { what: "a job request", known: &["model", "analysis"], later: &[] };
 const SWEEP_REQUEST: Fields = Fields { what: "a sweep", known: &["model", "analysis", "sweep"], later: &[] };
@@ -97,7 +99,9 @@ fn job_request(input: &Input, mistakes: &mut Mistakes) -> Option<JobRequest> {
     let object = request(input, &JOB_REQUEST, mistakes)?;
     let model = object.required("model", mistakes, model::model);
     let analysis = object.with_default("analysis", Default::default(), mistakes, analysis::analysis);
-    Some(JobRequest { model: model?, analysis: analysis? })
+    let (mut model, mut analysis) = (model?, analysis?);
+    sets::expand(&mut model, &mut analysis, mistakes);
+    Some(JobRequest { model, analysis })
 }
 
 fn study_request(input: &Input, mistakes: &mut Mistakes) -> Option<StudyRequest> {
@@ -105,5 +109,7 @@ fn study_request(input: &Input, mistakes: &mut Mistakes) -> Option<StudyRequest>
     let model = object.required("model", mistakes, model::model);
     let analysis = object.with_default("analysis", Default::default(), mistakes, analysis::analysis);
     let study = object.with_default("study", Default::default(), mistakes, study::study);
-    Some(StudyRequest { model: model?, analysis: analysis?, study: study? })
+    let (mut model, mut analysis) = (model?, analysis?);
+    sets::expand(&mut model, &mut analysis, mistakes);
+    Some(StudyRequest { model, analysis, study: study? })
 }

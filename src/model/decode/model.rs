@@ -63,7 +63,14 @@ const PLANE: Fields = Fields { what: "a plane", known: &["kind", "point", "norma
 
 const BALL: Fields = Fields { what: "a ball", known: &["kind", "center", "radius", "side"], later: &[] };
 
-const CONTACT: Fields = Fields { what: "a contact", known: &["node", "obstacle", "friction"], later: &[] };
+const CONTACT: Fields = Fields {
+    what: "a contact",
+    known: &["node", "obstacle", "friction"],
+    later: &[
+        ("surface", "`\"node\": \"@name\"` has the nodes of a surface touch"),
+        ("against", "rigid obstacles can be touched, other bodies not yet"),
+    ],
+};
 
 const STAGE: Fields = Fields {
     what: "a stage",

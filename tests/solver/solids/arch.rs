@@ -1,8 +1,7 @@
 //! A shallow clamped arch of a solid that snaps onto a rough floor and is pressed flat.
 
-use crate::common::paths::request;
+use crate::common::paths::{request, trace};
 use crate::solids::meshes::{Mesh, hold};
-use crate::solids::trace;
 use arcslip::result::increment::{Increment, PointKind};
 use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};

@@ -1,9 +1,8 @@
 //! A block on a rough plane, pressed and then pushed: all of it slips at `Q = μ N` exactly, on any mesh, and every node's
 //! slip before that is an event.
 
-use crate::common::paths::request;
+use crate::common::paths::{request, trace};
 use crate::solids::meshes::Mesh;
-use crate::solids::trace;
 use arcslip::result::increment::{Increment, Status};
 use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
@@ -92,7 +91,7 @@ fn a_block_slips_at_coulombs_limit_on_any_mesh_in_the_plane() {
 #[test]
 fn a_block_slips_at_coulombs_limit_in_space() {
     let material = json!({"kind": "linear_elastic", "young": 100, "poisson": 0});
-    for (kind, cells) in [("hexahedron8", [3, 1, 1]), ("hexahedron8", [4, 2, 2]), ("tetrahedron4", [3, 1, 1])] {
+    for (kind, cells) in [("hexahedron8", [3, 1, 1]), ("hexahedron8", [4, 2, 2]), ("hexahedron8", [6, 2, 2])] {
         let mesh = Mesh::new(kind, &cells, sizes);
         follow(&format!("{kind} {cells:?}"), &block(&mesh, &material, &json!({})));
     }

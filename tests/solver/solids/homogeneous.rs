@@ -1,8 +1,7 @@
 //! Homogeneous states of all materials on distorted meshes of all elements, against closed forms.
 
-use crate::common::paths::request;
+use crate::common::paths::{request, trace};
 use crate::solids::meshes::{IN_PLANE, IN_SPACE, Mesh, hold};
-use crate::solids::trace;
 use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
 

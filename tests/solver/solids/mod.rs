@@ -6,8 +6,3 @@ mod homogeneous;
 mod known_contacts;
 mod meshes;
 mod rivlin;
-
-fn trace(request: &arcslip::JobRequest) -> (Vec<arcslip::Increment>, arcslip::Report) {
-    let traced = crate::common::paths::judged(request);
-    (traced.increments, traced.report)
-}

@@ -4,9 +4,9 @@
 
 use crate::common::paths::request;
 use crate::solids::meshes::{Mesh, hold};
-use arcslip::resources::cancel::CancelFlag;
 use arcslip::continuation::path::iterator::Path;
 use arcslip::continuation::scene::Scene;
+use arcslip::resources::cancel::CancelFlag;
 use arcslip::result::increment::PointKind;
 use serde_json::{Value, json};
 

@@ -23,7 +23,7 @@ struct ModelBody<'a> {
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     surfaces: IndexMap<&'a str, SurfaceEntry<'a>>,
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
-    sets: IndexMap<&'a str, NamedSet<'a>>,
+    sets: IndexMap<&'a str, SetEntry<'a>>,
     stages: [EmptyStage; 1],
 }
 
@@ -35,7 +35,7 @@ struct EmptyStage {
 
 /// A set as a model writes it: `{"nodes": [...], "elements": [...]}`, by name; what is empty is left out.
 #[derive(Debug, Serialize)]
-pub struct NamedSet<'a> {
+pub struct SetEntry<'a> {
     /// Its nodes.
     #[serde(skip_serializing_if = "NodeNames::is_empty")]
     nodes: NodeNames<'a>,
@@ -50,7 +50,7 @@ impl<'a> Request<'a> {
         let mesh = model.mesh;
         let described = mesh.materials.iter().filter(|(_, material)| material.law.is_some());
         let names = mesh.node_sets.keys().chain(mesh.element_sets.keys());
-        let set = |name: &String| NamedSet {
+        let set = |name: &String| SetEntry {
             nodes: NodeNames(model, mesh.node_sets.get(name).map_or(&[], Vec::as_slice)),
             elements: ElementNames(model, mesh.element_sets.get(name).map_or(&[], Vec::as_slice)),
         };
@@ -72,7 +72,17 @@ impl<'a> Request<'a> {
     }
 }
 
-/// A label as a name.
+/// An element's label as a name: `e` before the number, since digits alone are an element's place.
+#[derive(Debug)]
+struct ElementName(u64);
+
+impl Serialize for ElementName {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(&format_args!("e{}", self.0))
+    }
+}
+
+/// A node's label as a name.
 #[derive(Debug)]
 struct Name(u64);
 
@@ -125,8 +135,9 @@ impl ElementNames<'_> {
 impl Serialize for ElementNames<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let labels = &self.0.mesh.elements.labels;
-        serializer
-            .collect_seq(self.1.iter().filter_map(|element| labels.get(*element as usize)).map(|label| Name(*label)))
+        serializer.collect_seq(
+            self.1.iter().filter_map(|element| labels.get(*element as usize)).map(|label| ElementName(*label)),
+        )
     }
 }
 
@@ -136,7 +147,7 @@ struct ElementEntries<'a>(&'a ConvertedModel<'a>);
 #[derive(Debug, Serialize)]
 struct SolidEntry<'a> {
     kind: &'static str,
-    name: Name,
+    name: ElementName,
     nodes: NodeNames<'a>,
     material: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -158,7 +169,7 @@ impl Serialize for ElementEntries<'_> {
                 let has_thickness = model.dimension == 2 && plane != Some(PlaneState::Axisymmetric);
                 SolidEntry {
                     kind: shape.name(),
-                    name: Name(*label),
+                    name: ElementName(*label),
                     nodes: NodeNames(model, nodes),
                     material: model.material_names.of(place),
                     plane,

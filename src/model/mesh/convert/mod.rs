@@ -11,7 +11,7 @@ use crate::model::mesh::data::error::{MeshError, MeshPlace};
 use crate::model::mesh::data::mesh_data::{MeshData, PlaneState};
 use material_names::MaterialNames;
 
-pub use document::NamedSet;
+pub use document::SetEntry;
 
 /// Distances from the plane of a plane mesh up to this share of its size are rounding.
 const FLATNESS: f64 = 1e-9;

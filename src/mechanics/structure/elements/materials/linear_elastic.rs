@@ -5,7 +5,7 @@
 use crate::mechanics::structure::elements::materials::tensor::{
     IDENTITY, Tensor2, Tensor4, add_crossed, add_dyad, add_product, contraction, flat, scaled, sum, trace, transpose,
 };
-use crate::mechanics::structure::elements::materials::{ElasticModuli, Material};
+use crate::mechanics::structure::elements::materials::{ElasticMaterial, ElasticModuli};
 
 /// A linear elastic material.
 #[derive(Debug, Clone, Copy)]
@@ -14,7 +14,7 @@ pub struct LinearElastic {
     pub moduli: ElasticModuli,
 }
 
-impl Material for LinearElastic {
+impl ElasticMaterial for LinearElastic {
     fn moduli(&self) -> ElasticModuli {
         self.moduli
     }

@@ -23,7 +23,7 @@ use std::fmt::Debug;
 use tensor::{Tensor2, Tensor4};
 
 /// An isotropic elastic material. A material of finite strain is asked only where `det F > 0`.
-pub trait Material: Debug + Send + Sync {
+pub trait ElasticMaterial: Debug + Send + Sync {
     /// The moduli of small strains.
     fn moduli(&self) -> ElasticModuli;
 

@@ -15,7 +15,7 @@ use crate::mechanics::structure::elements::materials::tensor::{
     exponential_remainder, flat, green_strain, logarithm_remainder, product, scaled, second_invariant, sum, trace,
     transpose, volume_change,
 };
-use crate::mechanics::structure::elements::materials::{ElasticModuli, Material, MaterialError};
+use crate::mechanics::structure::elements::materials::{ElasticMaterial, ElasticModuli, MaterialError};
 
 /// A material of Mooney and Rivlin.
 #[derive(Debug, Clone, Copy)]
@@ -42,7 +42,7 @@ impl MooneyRivlin {
     }
 }
 
-impl Material for MooneyRivlin {
+impl ElasticMaterial for MooneyRivlin {
     fn moduli(&self) -> ElasticModuli {
         ElasticModuli::from_bulk(2.0 * (self.first + self.second), self.bulk)
     }

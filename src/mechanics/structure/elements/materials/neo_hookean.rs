@@ -8,7 +8,7 @@ use crate::mechanics::structure::elements::materials::tensor::{
     IDENTITY, Tensor2, Tensor4, add_crossed, add_dyad, add_product, cofactor, determinant, flat, green_strain,
     logarithm_remainder, product, scaled, second_invariant, sum, trace, volume_change,
 };
-use crate::mechanics::structure::elements::materials::{ElasticModuli, Material};
+use crate::mechanics::structure::elements::materials::{ElasticMaterial, ElasticModuli};
 
 /// A compressible neo-Hookean material.
 #[derive(Debug, Clone, Copy)]
@@ -24,7 +24,7 @@ pub(super) fn distortion(strain: &Tensor2) -> f64 {
     -beyond - 0.5 * logarithm_remainder(2.0 * (trace(strain) + beyond))
 }
 
-impl Material for NeoHookean {
+impl ElasticMaterial for NeoHookean {
     fn moduli(&self) -> ElasticModuli {
         self.moduli
     }

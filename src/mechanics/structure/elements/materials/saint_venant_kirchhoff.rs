@@ -7,7 +7,7 @@ use crate::mechanics::structure::elements::materials::tensor::{
     IDENTITY, Tensor2, Tensor4, add_crossed, add_dyad, add_product, contraction, flat, green_strain, product, scaled,
     sum, trace, transpose,
 };
-use crate::mechanics::structure::elements::materials::{ElasticModuli, Material};
+use crate::mechanics::structure::elements::materials::{ElasticMaterial, ElasticModuli};
 
 /// A material of Saint Venant and Kirchhoff.
 #[derive(Debug, Clone, Copy)]
@@ -24,7 +24,7 @@ impl SaintVenantKirchhoff {
     }
 }
 
-impl Material for SaintVenantKirchhoff {
+impl ElasticMaterial for SaintVenantKirchhoff {
     fn moduli(&self) -> ElasticModuli {
         self.moduli
     }

@@ -95,7 +95,7 @@ fn neo_hookean_energy(moduli: ElasticModuli) -> Energy {
 }
 
 /// Every material with its energy written anew.
-fn materials() -> Vec<(Box<dyn Material>, Energy)> {
+fn materials() -> Vec<(Box<dyn ElasticMaterial>, Energy)> {
     let quadratic = |strain: Gradient| {
         let trace = strain[0][0] + strain[1][1] + strain[2][2];
         let square = strain.iter().flatten().fold(number(0.0), |total, value| total + *value * *value);

@@ -1,7 +1,7 @@
 //! Solid elements of a kind that is known at run time.
 
 use crate::mechanics::structure::element_list::ElementList;
-use crate::mechanics::structure::elements::materials::Material;
+use crate::mechanics::structure::elements::materials::ElasticMaterial;
 use crate::mechanics::structure::elements::solid::loads::{body_force, dead_traction};
 use crate::mechanics::structure::elements::solid::shapes::faces::FaceKind;
 use crate::mechanics::structure::elements::solid::shapes::geometry::NodalPositions;
@@ -17,13 +17,14 @@ pub struct SolidData {
     /// What holds in the third direction.
     pub idealisation: Idealisation,
     /// The material, in the unit of stress of the structure.
-    pub material: Arc<dyn Material>,
+    pub material: Arc<dyn ElasticMaterial>,
     /// The mend against locking; `None`: the usual one.
     pub mend: Option<LockingMend>,
 }
 
-/// A solid element of any kind.
+/// A solid element of any kind, on its way into a list of elements of one kind.
 #[derive(Debug, Clone)]
+#[expect(clippy::large_enum_variant, reason = "an element is moved once, and kept among others of its kind")]
 pub enum AnySolid {
     /// See [`SolidKind`], here and below.
     Triangle3(SolidElement<3, 2>),

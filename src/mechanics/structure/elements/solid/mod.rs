@@ -23,7 +23,7 @@ pub mod shapes;
 #[cfg(test)]
 mod tests;
 
-use crate::mechanics::structure::elements::materials::Material;
+use crate::mechanics::structure::elements::materials::ElasticMaterial;
 use crate::mechanics::structure::elements::materials::linear_elastic::LinearElastic;
 use crate::mechanics::structure::elements::materials::tensor::{Tensor2, contraction, deviator};
 use crate::mechanics::structure::elements::{COLLAPSED, FiniteElement, Resultants};
@@ -92,7 +92,7 @@ where
         nodes: [usize; N],
         positions: &[[f64; D]; N],
         idealisation: Idealisation,
-        material: Arc<dyn Material>,
+        material: Arc<dyn ElasticMaterial>,
     ) -> Result<Self, SolidElementError> {
         let mend = LockingMend::usual(<[[f64; D]; N]>::KIND, idealisation, &material.moduli());
         Self::with_mend(nodes, positions, idealisation, material, mend)
@@ -107,7 +107,7 @@ where
         nodes: [usize; N],
         positions: &[[f64; D]; N],
         idealisation: Idealisation,
-        material: Arc<dyn Material>,
+        material: Arc<dyn ElasticMaterial>,
         mend: LockingMend,
     ) -> Result<Self, SolidElementError> {
         if idealisation.dimension() != D {

@@ -14,8 +14,8 @@
 //! there is also `ξη`; in space there are nine, and three of volume, `ξη, ηζ, ζξ`, without which the mode `ξηζ` locks (J.
 //! C. Simo, F. Armero, R. L. Taylor, Comput. Methods Appl. Mech. Eng. 110 (1993) 359, doi:10.1016/0045-7825(93)90215-J).
 
+use crate::mechanics::structure::elements::materials::ElasticMaterial;
 use crate::mechanics::structure::elements::materials::ElasticModuli;
-use crate::mechanics::structure::elements::materials::Material;
 use crate::mechanics::structure::elements::materials::linear_elastic::LinearElastic;
 use crate::mechanics::structure::elements::materials::tensor::{
     IDENTITY, Tensor2, contraction, product, scaled, sum, transpose,

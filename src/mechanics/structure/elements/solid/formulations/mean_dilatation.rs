@@ -26,7 +26,7 @@
 //! g = ∂J̄/∂u,     h = Σ_q V_q Ψ_FJ : ∂F/∂u,     c = Σ_q V_q Ψ_JJ
 //! ```
 
-use crate::mechanics::structure::elements::materials::Material;
+use crate::mechanics::structure::elements::materials::ElasticMaterial;
 use crate::mechanics::structure::elements::materials::tensor::{
     Flat, IDENTITY, Tensor2, Tensor4, add_crossed, add_dyad, applied, cofactor, contraction, flat, scaled, sum, trace,
     unflat, volume_change,
@@ -41,7 +41,7 @@ use crate::mechanics::structure::elements::solid::shapes::geometry::PointGeometr
 /// The displacement gradient at a point and the material there.
 #[derive(Clone, Copy)]
 pub struct DilatedPoint<'a> {
-    material: &'a dyn Material,
+    material: &'a dyn ElasticMaterial,
     gradient: Tensor2,
     /// `J̄ - 1`, or the mean of `tr h`.
     mean_change: f64,
@@ -75,13 +75,13 @@ pub struct DilatedTangent {
 
 /// `J - 1`, or `tr h` for small strains.
 #[inline(always)]
-pub fn dilatation(material: &dyn Material, gradient: &Tensor2) -> f64 {
+pub fn dilatation(material: &dyn ElasticMaterial, gradient: &Tensor2) -> f64 {
     if material.is_linear() { trace(gradient) } else { volume_change(gradient) }
 }
 
 impl<'a> DilatedPoint<'a> {
     /// A point where `det F > 0`, in an element of mean dilatation `mean_change > -1`.
-    fn new(material: &'a dyn Material, gradient: &Tensor2, mean_change: f64) -> Self {
+    fn new(material: &'a dyn ElasticMaterial, gradient: &Tensor2, mean_change: f64) -> Self {
         let moduli = material.moduli();
         let exponent = (1.0 - (moduli.shear / moduli.bulk().max(moduli.shear)).sqrt()) / 3.0;
         let own = dilatation(material, gradient);

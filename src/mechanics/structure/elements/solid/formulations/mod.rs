@@ -7,7 +7,7 @@ pub mod nodal_sums;
 pub mod pointwise;
 pub mod response;
 
-use crate::mechanics::structure::elements::materials::Material;
+use crate::mechanics::structure::elements::materials::ElasticMaterial;
 use crate::mechanics::structure::elements::materials::tensor::{
     IDENTITY, Tensor2, product, scaled, sum, transpose, volume_change,
 };
@@ -81,7 +81,7 @@ pub trait Formulation<const N: usize, const D: usize, const S: usize> {
 impl<const N: usize, const D: usize> Body<N, D> {
     /// The material.
     #[inline(always)]
-    pub fn material(&self) -> &dyn Material {
+    pub fn material(&self) -> &dyn ElasticMaterial {
         self.law.material.as_ref()
     }
 

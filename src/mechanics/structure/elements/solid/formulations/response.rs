@@ -5,7 +5,7 @@
 //! stretch out of the plane is solved for, `∂W/∂F_22 = 0`, and leaves the tangent by condensation.
 
 use crate::mechanics::structure::elements::COLLAPSED;
-use crate::mechanics::structure::elements::materials::Material;
+use crate::mechanics::structure::elements::materials::ElasticMaterial;
 use crate::mechanics::structure::elements::materials::tensor::{Tensor2, Tensor4, volume_change};
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ const CONVERGED: f64 = 1e-9;
 #[derive(Debug, Clone)]
 pub struct ConstitutiveLaw {
     /// The material.
-    pub material: Arc<dyn Material>,
+    pub material: Arc<dyn ElasticMaterial>,
     /// Whether the stretch out of the plane is solved for.
     pub is_plane_stress: bool,
 }

@@ -5,16 +5,16 @@
 //! (1973) 405, doi:10.1002/nme.1620070316). Weights are positive.
 
 /// Points with their weights.
-pub type Rule<const D: usize> = Vec<([f64; D], f64)>;
+pub type QuadratureRule<const D: usize> = Vec<([f64; D], f64)>;
 
 /// Gauss's rule of 2 or 3 points along each axis, exact to degree 3 or 5.
-pub fn gauss<const D: usize>(points: usize) -> Rule<D> {
+pub fn gauss<const D: usize>(points: usize) -> QuadratureRule<D> {
     let line: &[(f64, f64)] = if points == 2 {
         &[(-0.577_350_269_189_625_8, 1.0), (0.577_350_269_189_625_8, 1.0)]
     } else {
         &[
             (-0.774_596_669_241_483_4, 0.555_555_555_555_555_6),
-            (0.0, 0.888_888_888_888_888_9),
+            (0.0, 8.0 / 9.0),
             (0.774_596_669_241_483_4, 0.555_555_555_555_555_6),
         ]
     };
@@ -33,14 +33,14 @@ pub fn gauss<const D: usize>(points: usize) -> Rule<D> {
 }
 
 /// The centroid: exact to degree 1.
-pub fn centroid<const D: usize>() -> Rule<D> {
+pub fn centroid<const D: usize>() -> QuadratureRule<D> {
     let corners = (D + 1) as f64;
     let volume = if D == 2 { 0.5 } else { 1.0 / 6.0 };
     vec![([1.0 / corners; D], volume)]
 }
 
 /// The rule of 3 points in the triangle and of 4 in the tetrahedron, exact to degree 2.
-pub fn interior<const D: usize>() -> Rule<D> {
+pub fn interior<const D: usize>() -> QuadratureRule<D> {
     let volume = if D == 2 { 0.5 } else { 1.0 / 6.0 };
     let small = if D == 2 { 1.0 / 6.0 } else { 0.138_196_601_125_010_5 };
     let weight = volume / (D + 1) as f64;
@@ -55,7 +55,7 @@ pub fn interior<const D: usize>() -> Rule<D> {
 }
 
 /// The rule of 6 points in the triangle, exact to degree 4.
-pub fn triangle_of_degree_4() -> Rule<2> {
+pub fn triangle_of_degree_4() -> QuadratureRule<2> {
     let groups = [
         (0.445_948_490_915_964_9, 0.5 * 0.223_381_589_678_011_5),
         (0.091_576_213_509_770_74, 0.5 * 0.109_951_743_655_321_9),

@@ -66,7 +66,7 @@ pub fn of_cube<const N: usize, const D: usize>(nodes: &[[f64; D]], (at, weight):
         let product = |derived: usize| -> f64 {
             factors.iter().enumerate().map(|(axis, factor)| factor[usize::from(axis == derived)]).product()
         };
-        *value = product(D);
+        *value = factors.iter().map(|factor| factor[0]).product();
         *gradient = std::array::from_fn(product);
         if !is_linear && node.iter().all(|own| *own != 0.0) {
             let along: f64 = node.iter().zip(&at).map(|(own, at)| own * at).sum();

@@ -3,7 +3,7 @@
 use super::loads::{Load, on_face};
 use super::meshes::{Mesh, linear, neo_hookean};
 use super::structures::{Solids, dead};
-use crate::mechanics::structure::elements::materials::Material;
+use crate::mechanics::structure::elements::materials::ElasticMaterial;
 use crate::mechanics::structure::elements::solid::shapes::faces::faces_of;
 use crate::mechanics::structure::elements::solid::shapes::kind::{Idealisation, LockingMend, SolidKind};
 use std::sync::Arc;
@@ -16,7 +16,7 @@ const PLANE_STRAIN: Idealisation = Idealisation::PlaneStrain { thickness: 1.0 };
 fn deflection(
     (kind, cells): (SolidKind, usize),
     idealisation: Idealisation,
-    material: &Arc<dyn Material>,
+    material: &Arc<dyn ElasticMaterial>,
     (force, steps): (f64, usize),
     mend: Option<LockingMend>,
 ) -> f64 {
@@ -70,7 +70,7 @@ fn nearly_incompressible_material_does_not_lock() {
     // The kinds agree with each other on the limit; a fine mesh of quadratic quadrilaterals is the measure.
     let small = linear(240.565, 0.4999);
     let large = neo_hookean(0.4999);
-    let cases: [(&Arc<dyn Material>, f64, usize); 2] = [(&small, 100.0, 1), (&large, 0.3, 3)];
+    let cases: [(&Arc<dyn ElasticMaterial>, f64, usize); 2] = [(&small, 100.0, 1), (&large, 0.3, 3)];
     for (material, force, steps) in cases {
         let of = |kind, cells, mend| deflection((kind, cells), PLANE_STRAIN, material, (force, steps), mend);
         let exact = of(SolidKind::Quadrilateral8, 16, None);

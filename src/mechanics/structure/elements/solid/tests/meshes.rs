@@ -5,7 +5,7 @@ use crate::mechanics::structure::elements::materials::linear_elastic::LinearElas
 use crate::mechanics::structure::elements::materials::mooney_rivlin::MooneyRivlin;
 use crate::mechanics::structure::elements::materials::neo_hookean::NeoHookean;
 use crate::mechanics::structure::elements::materials::saint_venant_kirchhoff::SaintVenantKirchhoff;
-use crate::mechanics::structure::elements::materials::{ElasticModuli, Material};
+use crate::mechanics::structure::elements::materials::{ElasticMaterial, ElasticModuli};
 use crate::mechanics::structure::elements::solid::shapes::kind::{Idealisation, LockingMend, SolidKind};
 use crate::mechanics::structure::elements::solid::{SolidElement, SolidElementError};
 use std::collections::BTreeMap;
@@ -44,15 +44,15 @@ pub fn moduli(young: f64, poisson: f64) -> ElasticModuli {
     ElasticModuli::from_young(young, poisson).unwrap()
 }
 
-pub fn neo_hookean(poisson: f64) -> Arc<dyn Material> {
+pub fn neo_hookean(poisson: f64) -> Arc<dyn ElasticMaterial> {
     Arc::new(NeoHookean { moduli: moduli(2.0, poisson) })
 }
 
-pub fn linear(young: f64, poisson: f64) -> Arc<dyn Material> {
+pub fn linear(young: f64, poisson: f64) -> Arc<dyn ElasticMaterial> {
     Arc::new(LinearElastic { moduli: moduli(young, poisson) })
 }
 
-pub fn materials() -> Vec<Arc<dyn Material>> {
+pub fn materials() -> Vec<Arc<dyn ElasticMaterial>> {
     vec![
         linear(2.0, 0.3),
         Arc::new(SaintVenantKirchhoff { moduli: moduli(2.0, 0.3) }),
@@ -67,7 +67,7 @@ pub fn element(
     nodes: &[usize],
     positions: &[[f64; 3]],
     idealisation: Idealisation,
-    material: &Arc<dyn Material>,
+    material: &Arc<dyn ElasticMaterial>,
     mend: Option<LockingMend>,
 ) -> Result<Box<dyn FiniteElement>, SolidElementError> {
     macro_rules! of {
@@ -202,7 +202,7 @@ pub fn distorted(kind: SolidKind, cells: usize) -> Mesh {
 pub fn single(
     kind: SolidKind,
     idealisation: Idealisation,
-    material: &Arc<dyn Material>,
+    material: &Arc<dyn ElasticMaterial>,
     mend: LockingMend,
 ) -> (Box<dyn FiniteElement>, Vec<[f64; 3]>) {
     let mesh = distorted(kind, 1);

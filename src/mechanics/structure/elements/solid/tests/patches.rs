@@ -3,7 +3,7 @@
 use super::meshes::{Mesh, distorted, materials, neo_hookean, variants};
 use super::structures::Solids;
 use crate::mechanics::structure::elements::Resultants;
-use crate::mechanics::structure::elements::materials::Material;
+use crate::mechanics::structure::elements::materials::ElasticMaterial;
 use crate::mechanics::structure::elements::materials::tensor::{IDENTITY, Tensor2, product, scaled, sum, transpose};
 use crate::mechanics::structure::elements::solid::formulations::response::ConstitutiveLaw;
 use crate::mechanics::structure::elements::solid::shapes::kind::{Idealisation, SolidKind};
@@ -20,7 +20,7 @@ pub fn homogeneous(idealisation: Idealisation) -> Tensor2 {
 }
 
 /// The gradient with the thickness that plane stress has.
-fn completed(material: &Arc<dyn Material>, idealisation: Idealisation, gradient: Tensor2) -> Tensor2 {
+fn completed(material: &Arc<dyn ElasticMaterial>, idealisation: Idealisation, gradient: Tensor2) -> Tensor2 {
     let is_plane_stress = matches!(idealisation, Idealisation::PlaneStress { .. });
     if !is_plane_stress {
         return gradient;

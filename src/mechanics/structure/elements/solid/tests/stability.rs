@@ -3,7 +3,7 @@
 use super::consistency::{displacement, stiffness};
 use super::meshes::{distorted, linear, materials, neo_hookean, single, variants};
 use super::structures::Solids;
-use crate::mechanics::structure::elements::materials::Material;
+use crate::mechanics::structure::elements::materials::ElasticMaterial;
 use crate::mechanics::structure::elements::solid::formulations::response::{ConstitutiveLaw, Slots4};
 use crate::mechanics::structure::elements::solid::shapes::kind::{Idealisation, LockingMend};
 use nalgebra::DMatrix;
@@ -50,7 +50,7 @@ fn as_matrix<const D: usize, const S: usize>(tangent: &Slots4<D, S>) -> Vec<f64>
 }
 
 /// Negative eigenvalues of the material's tangent at the stretches along the axes.
-fn unstable_directions(material: &Arc<dyn Material>, idealisation: Idealisation, stretches: [f64; 3]) -> usize {
+fn unstable_directions(material: &Arc<dyn ElasticMaterial>, idealisation: Idealisation, stretches: [f64; 3]) -> usize {
     let is_plane_stress = matches!(idealisation, Idealisation::PlaneStress { .. });
     let law = ConstitutiveLaw { material: material.clone(), is_plane_stress };
     let [x, y, z] = stretches.map(|stretch| stretch - 1.0);

@@ -2,7 +2,7 @@
 
 use super::meshes::{Mesh, element};
 use crate::mechanics::structure::elements::FiniteElement;
-use crate::mechanics::structure::elements::materials::Material;
+use crate::mechanics::structure::elements::materials::ElasticMaterial;
 use crate::mechanics::structure::elements::solid::shapes::kind::{Idealisation, LockingMend};
 use std::sync::Arc;
 
@@ -61,7 +61,7 @@ impl Solids {
     pub fn new(
         mesh: &Mesh,
         idealisation: Idealisation,
-        material: &Arc<dyn Material>,
+        material: &Arc<dyn ElasticMaterial>,
         mend: Option<LockingMend>,
     ) -> Self {
         let dimension = mesh.kind.dimension();

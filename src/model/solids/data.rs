@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// # Errors
 ///
 /// Where the constants make none; the message has them over `unit`.
-pub(crate) fn material(given: &Material, unit: f64) -> Result<Arc<dyn materials::Material>, MaterialError> {
+pub(crate) fn material(given: &Material, unit: f64) -> Result<Arc<dyn materials::ElasticMaterial>, MaterialError> {
     let moduli = |constants: &ElasticConstants| ElasticModuli::from_young(constants.young / unit, constants.poisson);
     Ok(match given {
         Material::LinearElastic(constants) => Arc::new(LinearElastic { moduli: moduli(constants)? }),

@@ -1,0 +1,235 @@
+//! `@name` in place of a node: the nodes of a set, or of a surface.
+//!
+//! A model is expanded once, after it is read: checks, solver and results know nodes alone.
+
+use crate::model::input::limits::{MAX_CONTACTS, MAX_NODES};
+use crate::model::input::mistakes::{DocumentPlace, Mistakes};
+use crate::model::input::names::{quoted, suggestion};
+use crate::model::request::{Analysis, Contact, Model, NamedSet, Record, RecordedContacts, RecordedSupports, Surface};
+use crate::model::{InputErrors, JobRequest};
+use indexmap::{IndexMap, IndexSet};
+
+/// The request with the nodes of sets and surfaces in place of their names, `@name`: in supports, loads, contacts and in what
+/// is recorded. Requests read from JSON are expanded already.
+///
+/// # Errors
+///
+/// Every name that is unknown, every set without nodes, and every node that is given two values.
+///
+/// ```
+/// use arcslip::{Component, JobRequest, Model, NamedSet, Stage};
+///
+/// let mut model = Model::new(2).node("a", [0.0, 0.0]).node("b", [1.0, 0.0]);
+/// model.sets.insert("foot".into(), NamedSet { nodes: vec!["a".into(), "b".into()], elements: vec![] });
+/// let request = JobRequest::from(model.support("@foot", [Component::Y]));
+/// assert_eq!(arcslip::expand_sets(request)?.model.supports.len(), 2);
+/// # Ok::<(), arcslip::InputErrors>(())
+/// ```
+pub fn expand_sets(mut request: JobRequest) -> Result<JobRequest, InputErrors> {
+    let mut mistakes = Mistakes::default();
+    expand(&mut request.model, &mut request.analysis, &mut mistakes);
+    mistakes.into_result().map(|()| request)
+}
+
+/// Puts nodes in place of names of sets and surfaces.
+pub(super) fn expand(model: &mut Model, analysis: &mut Analysis, mistakes: &mut Mistakes) {
+    if !uses_sets(model, analysis) {
+        return;
+    }
+    let groups = Groups::of(model);
+    let at = DocumentPlace::ROOT.member("model");
+    let supports = std::mem::take(&mut model.supports);
+    model.supports = groups.map(supports, &at.member("supports"), mistakes, |own, more| {
+        more.into_iter().for_each(|component| {
+            if !own.contains(&component) {
+                own.push(component);
+            }
+        });
+        true
+    });
+    let at_contacts = at.member("contacts");
+    model.contacts = groups.contacts(std::mem::take(&mut model.contacts), &at_contacts, mistakes);
+    let at_stages = at.member("stages");
+    for (index, stage) in model.stages.iter_mut().enumerate() {
+        let at = at_stages.index(index);
+        for (name, pattern) in [("forces", &mut stage.forces), ("displacements", &mut stage.displacements)] {
+            *pattern = groups.map(std::mem::take(pattern), &at.member(name), mistakes, |own, other| *own == other);
+        }
+        let moments = std::mem::take(&mut stage.moments);
+        stage.moments = groups.map(moments, &at.member("moments"), mistakes, |own, other| *own == other);
+    }
+    if let Some(record) = &mut analysis.record {
+        recorded(&groups, record, mistakes);
+    }
+}
+
+fn recorded(groups: &Groups, record: &mut Record, mistakes: &mut Mistakes) {
+    let analysis_at = DocumentPlace::ROOT.member("analysis");
+    let at = analysis_at.member("record");
+    let listed = |names: &mut Vec<String>, at: &DocumentPlace, mistakes: &mut Mistakes| {
+        let mut all: IndexSet<String> = IndexSet::new();
+        for (index, name) in std::mem::take(names).into_iter().enumerate() {
+            match groups.members(&name, &at.index(index), mistakes) {
+                Members::Own => drop(all.insert(name)),
+                Members::Nodes(nodes) => all.extend(nodes.iter().cloned()),
+                Members::Mistaken => {}
+            }
+        }
+        *names = all.into_iter().collect();
+    };
+    if let Some(nodes) = &mut record.nodes {
+        listed(nodes, &at.member("nodes"), mistakes);
+    }
+    if let Some(RecordedSupports::Named(nodes)) = &mut record.supports {
+        listed(nodes, &at.member("supports"), mistakes);
+    }
+    if let Some(RecordedContacts::Named(contacts)) = &mut record.contacts {
+        let at = at.member("contacts");
+        let mut all = Vec::new();
+        for (index, contact) in std::mem::take(contacts).into_iter().enumerate() {
+            match groups.members(&contact.node, &at.index(index), mistakes) {
+                Members::Own => all.push(contact),
+                Members::Nodes(nodes) => all.extend(nodes.iter().map(|node| {
+                    let mut own = contact.clone();
+                    own.node.clone_from(node);
+                    own
+                })),
+                Members::Mistaken => {}
+            }
+        }
+        *contacts = all;
+    }
+}
+
+fn is_group(name: &str) -> bool {
+    name.starts_with('@')
+}
+
+fn uses_sets(model: &Model, analysis: &Analysis) -> bool {
+    let of_stages = model
+        .stages
+        .iter()
+        .flat_map(|stage| stage.forces.keys().chain(stage.displacements.keys()).chain(stage.moments.keys()));
+    let record = analysis.record.as_ref();
+    let recorded = record.iter().flat_map(|record| {
+        let supports = match &record.supports {
+            Some(RecordedSupports::Named(nodes)) => nodes.as_slice(),
+            _ => &[],
+        };
+        let contacts = record.named_contacts().unwrap_or_default().iter().map(|contact| &contact.node);
+        record.nodes.iter().flatten().chain(supports).chain(contacts)
+    });
+    let of_contacts = model.contacts.iter().map(|contact| &contact.node);
+    model.supports.keys().chain(of_contacts).chain(of_stages).chain(recorded).any(|name| is_group(name))
+}
+
+/// The sets and surfaces of a model by name.
+struct Groups {
+    nodes: IndexMap<String, Vec<String>>,
+}
+
+/// What a name stands for.
+enum Members<'a> {
+    /// Itself.
+    Own,
+    Nodes(&'a [String]),
+    /// Nothing, which has been noted.
+    Mistaken,
+}
+
+impl Groups {
+    fn of(model: &Model) -> Self {
+        let mut nodes: IndexMap<String, Vec<String>> = IndexMap::new();
+        for (name, Surface { faces }) in &model.surfaces {
+            let unique: IndexSet<&String> = faces.iter().flatten().collect();
+            nodes.insert(name.clone(), unique.into_iter().cloned().collect());
+        }
+        let places: IndexMap<&str, usize> =
+            model.elements.iter().enumerate().filter_map(|(place, element)| Some((element.name()?, place))).collect();
+        for (name, NamedSet { nodes: own, elements }) in &model.sets {
+            let mut unique: IndexSet<&String> = own.iter().collect();
+            if own.is_empty() {
+                let of_elements = elements.iter().filter_map(|element| places.get(element.as_str()));
+                of_elements.for_each(|place| unique.extend(model.elements[*place].nodes()));
+            }
+            nodes.insert(name.clone(), unique.into_iter().cloned().collect());
+        }
+        Self { nodes }
+    }
+
+    fn members(&self, name: &str, at: &DocumentPlace, mistakes: &mut Mistakes) -> Members<'_> {
+        let Some(group) = name.strip_prefix('@') else { return Members::Own };
+        match self.nodes.get(group) {
+            Some(nodes) if !nodes.is_empty() => Members::Nodes(nodes),
+            Some(_) => {
+                mistakes.add(at, || format!("the set {} has no nodes", quoted(group)));
+                Members::Mistaken
+            }
+            None => {
+                mistakes.add(at, || {
+                    let known = suggestion(group, self.nodes.keys().map(String::as_str));
+                    format!("there is no set or surface {}{known}", quoted(group))
+                });
+                Members::Mistaken
+            }
+        }
+    }
+
+    /// A map by nodes; `merge` unites a second value of a node with the first, and returns whether it could.
+    fn map<V: Clone>(
+        &self,
+        given: IndexMap<String, V>,
+        at: &DocumentPlace,
+        mistakes: &mut Mistakes,
+        merge: impl Fn(&mut V, V) -> bool,
+    ) -> IndexMap<String, V> {
+        let mut all: IndexMap<String, V> = IndexMap::with_capacity(given.len());
+        for (name, value) in given {
+            let at = at.member(&name);
+            let single = [name.clone()];
+            let nodes = match self.members(&name, &at, mistakes) {
+                Members::Own => &single[..],
+                Members::Nodes(nodes) => nodes,
+                Members::Mistaken => &[],
+            };
+            for node in nodes {
+                match all.get_mut(node) {
+                    None => drop(all.insert(node.clone(), value.clone())),
+                    Some(own) => {
+                        if !merge(own, value.clone()) {
+                            mistakes.add(&at, || {
+                                format!("the node {} is given another value, too; one is expected", quoted(node))
+                            });
+                        }
+                    }
+                }
+            }
+            if all.len() > MAX_NODES {
+                // More than a model may have, which the checks of sizes say.
+                break;
+            }
+        }
+        all
+    }
+
+    fn contacts(&self, given: Vec<Contact>, at: &DocumentPlace, mistakes: &mut Mistakes) -> Vec<Contact> {
+        let mut all = Vec::with_capacity(given.len());
+        for (index, contact) in given.into_iter().enumerate() {
+            let place = at.index(index);
+            match self.members(&contact.node, &place.member("node"), mistakes) {
+                Members::Own => all.push(contact),
+                Members::Nodes(nodes) => {
+                    if all.len() + nodes.len() > MAX_CONTACTS {
+                        mistakes.add(&place, || {
+                            format!("with this set there are more than {MAX_CONTACTS} contacts, as many as are taken")
+                        });
+                        return all;
+                    }
+                    all.extend(nodes.iter().map(|node| Contact { node: node.clone(), ..contact.clone() }));
+                }
+                Members::Mistaken => {}
+            }
+        }
+        all
+    }
+}
