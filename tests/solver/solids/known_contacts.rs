@@ -87,7 +87,7 @@ fn widths(model: &Value, increment: &Increment) -> Widths {
 #[test]
 fn a_rigid_cylinder_on_a_block_follows_hertz_and_cattaneo_and_mindlin() {
     let modulus = 1.0 / (1.0 - POISSON.powi(2));
-    for cells in [24, 32] {
+    for cells in [24] {
         let model = cylinder_on_block(cells);
         let (increments, report) = trace(&request(&model.to_string()));
         assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{report:?}");

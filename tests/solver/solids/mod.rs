@@ -1,8 +1,10 @@
 //! Solids: patches, homogeneous states, exact solutions and contact with rigid obstacles.
 
 mod arch;
+mod bad_models;
 mod blocks;
 mod homogeneous;
+mod invariance;
 mod known_contacts;
 mod meshes;
 mod rivlin;

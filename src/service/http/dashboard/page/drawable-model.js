@@ -1,5 +1,7 @@
 // What can be drawn of the model in the text of a request, and sentences on what cannot.
 
+import { SOLIDS } from "./structure-solids.js";
+
 const KINDS = ["plane", "ball"];
 /** The most sentences; the others are counted. */
 const SENTENCES = 8;
@@ -94,12 +96,12 @@ function obstacleProblem(reading, obstacle) {
 }
 
 /** How many nodes an element of a kind may have. */
-const COUNTS = { bar: [2], spring: [1, 2], beam: [2, 3], rotational_spring: [1, 2] };
+const COUNTS = { bar: [2], spring: [1, 2], beam: [2, 3], rotational_spring: [1, 2], ...SOLIDS };
 
 function elementProblem(reading, item, missing) {
   const names = listOf(item?.nodes);
   const most = COUNTS[item?.kind];
-  if (most === undefined) return "its kind has to be bar, spring, beam or rotational_spring";
+  if (most === undefined) return "its kind has to be bar, spring, beam, rotational_spring or a solid";
   if (!most.includes(names.length)) return `it has to have ${most.join(" or ")} nodes`;
   const found = names.map(missing).find(Boolean);
   if (found || item.kind !== "spring") return found ?? null;

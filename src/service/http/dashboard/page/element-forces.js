@@ -5,8 +5,9 @@ import { places, tension, vector } from "./geometry.js";
 const { plus } = vector;
 
 /**
- * For each element of the model `{axial, force, ends, moment}`: the axial force of a bar or beam or the force of a spring, null where it is
- * not known, and where they are recorded the forces at a beam's ends and the moment of a rotational spring.
+ * For each element of the model `{axial, force, ends, moment, equivalent}`: the axial force of a bar or beam or the force of a spring, null where it is
+ * not known, and where they are recorded the forces at a beam's ends, the moment of a rotational spring and the equivalent
+ * stress of a solid.
  * `isComputed`: some of them are not recorded, and have been computed here.
  */
 export function elementForces(model, increment) {
@@ -29,7 +30,9 @@ export function elementForces(model, increment) {
 /** Of a beam the mean of its ends. */
 function recordedForces(state) {
   const axial = state.ends ? (state.ends[0].axial_force + state.ends[1].axial_force) / 2 : state.axial_force;
-  return { axial: axial ?? null, force: state.force ?? null, ends: state.ends, moment: state.moment ?? null };
+  return {
+    axial: axial ?? null, force: state.force ?? null, ends: state.ends, moment: state.moment ?? null, equivalent: state.von_mises ?? null,
+  };
 }
 
 function computed(model, increment, item, now) {

@@ -16,6 +16,7 @@ const MEMBERS = {
   gap: ["gap", "length"], normal_reaction: ["normal reaction", "force"], tangential_reaction: ["tangential reaction", "force"],
   reaction: ["reaction", "force"], slip: ["slip of the increment", "length"], slip_total: ["slip in total", "length"],
   axial_force: ["axial force", "force"], force: ["force", "force"], moment: ["moment", ["force", "length"]],
+  stress: ["stress", []], von_mises: ["von Mises stress", []],
 };
 
 /** The same of a beam's ends. */
@@ -26,6 +27,7 @@ const AT_ENDS = {
 };
 const ABOUT_AXES = ["shear_forces", "bending_moments"];
 const ENDS = ["first", "last"];
+export const STRESSES = ["xx", "yy", "zz", "xy", "yz", "xz"];
 
 /** The nodes that have rotations, last among their displacements: those of beams and rotational springs. */
 export function rotatingNodes(model) {
@@ -143,6 +145,7 @@ function wordsOf(name, request) {
 /** Tangents have numbers, axes have letters. */
 function along([member, component]) {
   if (component === undefined) return "";
+  if (member === "stress") return ` ${STRESSES[component]}`;
   const isTangential = member !== "reaction" && member !== "force";
   return isTangential ? ` (tangent ${Number(component) + 1})` : ` ${COMPONENTS[component]}`;
 }

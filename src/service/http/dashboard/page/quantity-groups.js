@@ -1,6 +1,7 @@
 // All quantities that a job records, in groups, to choose from.
 
-import { contactWords, displacement, elementWords, escaped, PLAIN, quantityWords, recordedParts, rotatingNodes, rotations } from "./quantities.js";
+import { contactWords, displacement, elementWords, escaped, PLAIN, quantityWords, recordedParts, rotatingNodes, rotations, STRESSES } from "./quantities.js";
+import { SOLIDS } from "./structure-solids.js";
 
 const LETTERS = "xyz";
 const ACCURACY = [
@@ -61,6 +62,10 @@ function elementGroups(places, model, axes) {
       ]),
     ])),
     group("Moments of rotational springs", "rotational_spring", [["moment", "moment"]]),
+    ...Object.keys(SOLIDS).map((kind) => group(`Stresses of ${kind}`, kind, [
+      ["von_mises", "von Mises stress"],
+      ...STRESSES.slice(0, model.dimension === 2 ? 4 : 6).map((name, place) => [`stress/${place}`, `stress ${name}`]),
+    ])),
   ];
 }
 

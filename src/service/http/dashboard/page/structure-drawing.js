@@ -8,6 +8,7 @@ import { places, projection, vector } from "./geometry.js";
 import { ContactDrawing } from "./structure-contacts.js";
 import { Detail } from "./structure-detail.js";
 import { ElementDrawing } from "./structure-elements.js";
+import { StressColours } from "./structure-solids.js";
 import { drawLoads, largestOf, loadsOf } from "./structure-loads.js";
 import { NodeDrawing } from "./structure-nodes.js";
 import { ObstacleDrawing } from "./structure-obstacles.js";
@@ -45,9 +46,10 @@ export function structureDrawing(model, increment, view) {
   const isAtRest = increment.index === null;
   const moved = new Map(isAtRest ? [] : [...loads.motions].map(([name, motion]) => [name, times(motion, exaggeration)]));
   const colours = new ForceColours(model, largest.axial);
+  const stressColours = new StressColours(largest.stress ?? 0);
   const common = { now, moved, units, detail };
   new ObstacleDrawing(model, extent, traces, { ...common, moves: loads.motions });
-  new ElementDrawing(model, traces, { ...common, forces, colours, rotation, diagrams, size: extent.size });
+  new ElementDrawing(model, traces, { ...common, forces, colours, stressColours, rotation, diagrams, size: extent.size });
   drawLoads(loads, extent, traces, { ...common, most: largest.load });
   new ContactDrawing(model, increment, extent, traces, { ...common, most: largest.reaction });
   const hasNames = detail.canHaveNames && (view.hasNames ?? detail.hasNames);
@@ -56,7 +58,7 @@ export function structureDrawing(model, increment, view) {
   if (forces.isComputed && largest.axial > 0 && !isAtRest) {
     detail.leave("Forces of elements are not all recorded; those that are not are computed from the displacements");
   }
-  const scale = colours.scale(units.force);
+  const scale = stressColours.scale(units) ?? colours.scale(units.force);
   return { traces: scale ? [...traces.all, scale] : traces.all, leftOut: detail.leftOut };
 }
 
@@ -74,5 +76,8 @@ function keepLargest(largest, increment, loads, forces) {
     largest.reaction = Math.max(largest.reaction, Math.hypot(normal, ...tangential));
   }
   largest.load = Math.max(largest.load, largestOf(loads.forces));
-  for (const { axial } of forces.of) largest.axial = Math.max(largest.axial, Math.abs(axial ?? 0));
+  for (const { axial, equivalent } of forces.of) {
+    largest.axial = Math.max(largest.axial, Math.abs(axial ?? 0));
+    largest.stress = Math.max(largest.stress ?? 0, equivalent ?? 0);
+  }
 }

@@ -3,6 +3,7 @@
 import { beamShape } from "./beam-shape.js";
 import { diagramValues } from "./force-diagrams.js";
 import { fromSheet } from "./plot-style.js";
+import { edgesOf, isSolid } from "./structure-solids.js";
 import { components, measured, moment } from "./units.js";
 
 /** Sizes of the signs of hinges and rotational springs, as parts of the extent. */
@@ -13,8 +14,8 @@ const title = (item, number) => `${item.kind} ${item.name ?? number}`;
 
 export class ElementDrawing {
   /** `forces`: of `elementForces`; `colours`: of bars; `rotation(name)`: of a node, as it is drawn; `diagrams`: null for none. */
-  constructor(model, traces, { now, forces, colours, units, detail, rotation, diagrams, size }) {
-    Object.assign(this, { model, traces, now, forces, colours, units, detail, rotation, diagrams, size });
+  constructor(model, traces, { now, forces, colours, stressColours, units, detail, rotation, diagrams, size }) {
+    Object.assign(this, { model, traces, now, forces, colours, stressColours, units, detail, rotation, diagrams, size });
     this.faint = { color: fromSheet("--faint"), width: 1.5, dash: "dot" };
     this.spring = { color: fromSheet("--text"), width: detail.isLarge ? 1 : 2, dash: "dash" };
     (model.elements ?? []).forEach((item, number) => this.draw(item, number));
@@ -25,6 +26,10 @@ export class ElementDrawing {
     const ends = item.nodes.map((name) => now.get(name));
     const before = item.nodes.map((name) => model.nodes[name]);
     const { axial, force } = forces.of[number];
+    if (isSolid(item)) {
+      this.solid(item, ends, before, forces.of[number], number);
+      return;
+    }
     const named = [title(item, number), item.nodes.join(" – ")];
     if (item.kind === "rotational_spring") {
       // It joins two nodes at one place, or a node to the ground.
@@ -59,6 +64,24 @@ export class ElementDrawing {
     const values = this.diagrams && diagramValues(this.diagrams.kind, found);
     if (values) this.diagrams.draw(shape, values, named);
     this.traces.element(`bar ${color}`, shape, { color, width: this.detail.lineWidth }, [...named, force]);
+  }
+
+  /** In the plane filled, in space its edges; coloured by the equivalent stress. */
+  solid(item, places, before, found, number) {
+    const { model, traces, units } = this;
+    if (places.includes(undefined)) {
+      traces.lines("undeformed", edgesOf(item, before), this.faint);
+      return;
+    }
+    const color = this.stressColours.of(found.equivalent ?? null);
+    if (model.dimension === 2) edgesOf(item, places).forEach((outline) => traces.body(`solid ${color}`, outline, color, fromSheet("--faint")));
+    else traces.lines(`solid ${color}`, edgesOf(item, places), { color, width: 1.5 });
+    if (this.detail.isLarge) return;
+    const middle = places[0].map((_, axis) => places.reduce((sum, place) => sum + place[axis], 0) / places.length);
+    const unit = units.force && units.length ? `${units.force}/${units.length}²` : "";
+    traces.unmarked("element values", middle, [title(item, number),
+      found.equivalent === undefined || found.equivalent === null ? "stress not recorded"
+        : `von Mises stress ${measured(found.equivalent, unit)}`]);
   }
 
   beam(item, places, found, named) {

@@ -75,6 +75,15 @@ export class StructureTraces {
     this.interrupt(trace);
   }
 
+  /** A body in the plane, filled, its edge darker; all of one name are one trace. */
+  body(name, outline, color, edge) {
+    const trace = this.trace(name, () => ({
+      mode: "lines", line: { color: edge, width: 0.7 }, fill: "toself", fillcolor: color, hoverinfo: "skip",
+    }));
+    this.add(trace, outline);
+    this.interrupt(trace);
+  }
+
   /** A position with values but without a mark. */
   unmarked(name, place, words) {
     const trace = this.trace(name, () => ({ mode: "lines", line: { width: 0 } }));
