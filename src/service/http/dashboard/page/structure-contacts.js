@@ -56,7 +56,7 @@ export class ContactDrawing {
 
   mark(contact) {
     const [, symbol, colour] = STATES.find(([state]) => state === contact.status) ?? STATES[0];
-    const size = this.detail.isLarge ? 7 : 11;
+    const size = this.detail.marksNodes ? 11 : 7;
     // The node tells its values.
     this.traces.marker(contact.status, this.now.get(contact.node), { symbol, color: fromSheet(colour), size });
   }

@@ -1,5 +1,7 @@
 // The level of detail of a picture of a structure: what is left out of a large one, so that it can be read and is drawn quickly.
 
+import { isSolid } from "./structure-solids.js";
+
 /** With more nodes than this the picture is a large one: thin lines, marks only at nodes at which something acts. */
 const LARGE = 300;
 /** With at most this many nodes their names are in the picture. */
@@ -16,6 +18,8 @@ export class Detail {
     this.hasBeams = model.dimension === 2 && (model.elements ?? []).some(({ kind }) => kind === "beam");
     this.nodes = Object.keys(model.nodes).length;
     this.isLarge = this.nodes > LARGE;
+    /** Nodes of solids are where their edges meet. */
+    this.marksNodes = !this.isLarge && !(model.elements ?? []).some(isSolid);
     this.hasNames = this.nodes <= NAMED;
     this.canHaveNames = this.nodes <= NAMEABLE;
     /** Sentences on what has been left out of the picture. */

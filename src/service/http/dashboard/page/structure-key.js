@@ -17,7 +17,7 @@ export function structureKey(place, model) {
   const brings = (member) => model.stages.some((stage) => Object.keys(stage[member] ?? {}).length > 0);
   fill(place,
     elements.some(({ kind }) => kind === "bar" || kind === "beam") && !isLarge ? swatch("border-color:var(--faint)", "undeformed", "dotted") : null,
-    elements.some(isSolid) ? swatch("border-color:#348d8b", "solid") : null,
+    elements.some(isSolid) ? swatch("background:#348d8b", "solid") : null,
     elements.some(({ kind }) => kind === "spring") ? swatch("", "spring", "dashed") : null,
     elements.some(({ releases }) => Object.keys(releases ?? {}).length) && !isLarge ? sign("--text", "○", "hinge") : null,
     elements.some(({ kind }) => kind === "rotational_spring") && !isLarge ? sign("--text", "@", "rotational spring") : null,

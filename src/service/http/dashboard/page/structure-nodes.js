@@ -32,8 +32,8 @@ export class NodeDrawing {
   /** A triangle for each component that is held, with its tip at the node. */
   supports() {
     const { model, traces, now, extent } = this;
-    const height = (this.detail.isLarge ? SMALL : SUPPORT) * extent.size;
-    const line = { color: fromSheet("--text"), width: this.detail.isLarge ? 1 : 1.5 };
+    const height = (this.detail.marksNodes ? SUPPORT : SMALL) * extent.size;
+    const line = { color: fromSheet("--text"), width: this.detail.marksNodes ? 1.5 : 1 };
     for (const [name, held] of Object.entries(model.supports ?? {})) {
       const place = now.get(name);
       if (!place) continue;
@@ -69,12 +69,12 @@ export class NodeDrawing {
 
   nodes() {
     const { traces, detail } = this;
-    const node = traces.trace("node", () => (detail.isLarge ? { mode: "lines", line: { width: 0 } }
+    const node = traces.trace("node", () => (!detail.marksNodes ? { mode: "lines", line: { width: 0 } }
       : { mode: "markers", marker: { color: fromSheet("--text"), size: 5 } }));
     for (const [name, place] of this.now) {
       traces.add(node, [place], this.words(name));
       // No lines between nodes.
-      if (detail.isLarge) traces.interrupt(node);
+      if (!detail.marksNodes) traces.interrupt(node);
     }
   }
 }
