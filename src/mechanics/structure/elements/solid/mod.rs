@@ -11,7 +11,7 @@
 //! ([`LockingMend`]); forces and tangent are always the exact derivatives of the energy, and the tangent is symmetric.
 //! Elements of a linear elastic material are linear.
 //!
-//! Where an element is turned inside out at a quadrature point (`J` below [`COLLAPSED`]; in plane stress also where no
+//! Where an element is turned inside out at a quadrature point (`J` below 1e-4; in plane stress also where no
 //! thickness is free of stress), there is no energy: it is infinite. Forces and tangent are then those of linear
 //! elasticity, finite for an iteration to go on; [`stretch`](FiniteElement::stretch), the least `J`, tells that the state
 //! is none to accept.
