@@ -153,7 +153,9 @@ pub fn turned_in_plane(mut request: JobRequest, angle: f64, shift: f64) -> JobRe
         }
     }
     for stage in &mut request.model.stages {
-        for pattern in [&mut stage.forces, &mut stage.displacements, &mut stage.obstacle_motion] {
+        let of_solids = [&mut stage.body_forces, &mut stage.tractions];
+        let of_nodes = [&mut stage.forces, &mut stage.displacements, &mut stage.obstacle_motion];
+        for pattern in of_nodes.into_iter().chain(of_solids) {
             for vector in pattern.values_mut() {
                 // A third component is a rotation, which stays.
                 let turned = turn(vector);

@@ -2,6 +2,7 @@
 
 use crate::common::paths::{Traced, judged};
 use crate::common::random::{random_frame, random_scene, random_space};
+use crate::common::random_solids::random_solid;
 use crate::common::variants::turned_in_plane;
 use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
@@ -11,6 +12,7 @@ use arcslip::result::stop_reason::StopReason;
 
 const SCENES: u64 = 200;
 const FRAMES: u64 = 200;
+const BODIES: u64 = 100;
 const SCENES_IN_SPACE: u64 = 60;
 /// Scenes in space whose slips begin or end hardly pressed, or are pressed only once the node has moved, and go on.
 const HARDLY_PRESSED: [u64; 22] =
@@ -161,14 +163,30 @@ fn every_path_of_a_frame_keeps_the_laws() {
     assert!(contact_changes >= 30 && smooth_limits >= 5 && bifurcations >= 100);
 }
 
+#[test]
+fn every_path_of_a_body_keeps_the_laws() {
+    let seeds: Vec<u64> = (0..BODIES).collect();
+    let Seen { contact_changes, .. } = judge_all(random_solid, &seeds);
+    assert!(contact_changes >= 100);
+}
+
 /// A turned and moved frame has the turned path: its events at the same loads, its nodes at the turned places.
 #[test]
 fn frames_are_objective() {
+    are_objective(random_frame, FRAMES);
+}
+
+#[test]
+fn bodies_are_objective() {
+    are_objective(random_solid, BODIES);
+}
+
+fn are_objective(scene: fn(u64) -> JobRequest, scenes: u64) {
     let (angle, shift) = (0.7_f64, 0.3);
     let (sine, cosine) = angle.sin_cos();
     let mut faulty = Vec::new();
-    for seed in 0..FRAMES {
-        let mut request = random_frame(seed);
+    for seed in 0..scenes {
+        let mut request = scene(seed);
         // The default is the diagonal of a box, which turns.
         let plan = judged(&request).plan;
         let arc_length = &mut request.analysis.arc_length;
@@ -189,7 +207,7 @@ fn frames_are_objective() {
         }
         faulty.extend(difference(&plain.increments, &back).map(|fault| format!("{seed}: {fault}")));
     }
-    assert!(faulty.is_empty(), "{} of {FRAMES} frames:\n{}", faulty.len(), faulty.join("\n"));
+    assert!(faulty.is_empty(), "{} of {scenes}:\n{}", faulty.len(), faulty.join("\n"));
 }
 
 /// The same seed, the same scene; another seed, another.
