@@ -11,6 +11,8 @@ pub(super) struct Template {
     members: Vec<Member>,
     /// The request with the first values, if it can be read; apart from the varied places all requests are equal to it.
     first: Option<JobRequest>,
+    /// Whether a name may stand for a set or surface: parts of the model then depend on others.
+    names_sets: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -55,8 +57,10 @@ impl Template {
                 }
             }
         }
-        let mut template = Self { members, first: None };
-        template.first = decode::decode(template.text(first, true).as_bytes()).ok();
+        let mut template = Self { members, first: None, names_sets: false };
+        let text = template.text(first, true);
+        template.names_sets = text.contains("\"@");
+        template.first = decode::decode(text.as_bytes()).ok();
         template
     }
 
@@ -72,7 +76,7 @@ impl Template {
 
     /// The request, composed of its common and its varied parts; `None` if this is not possible, for example because of mistakes.
     fn read(&self, values: &[Value]) -> Option<JobRequest> {
-        let first = self.first.as_ref()?;
+        let first = self.first.as_ref().filter(|_| !self.names_sets)?;
         let differing = decode::decode(self.text(values, false).as_bytes()).ok()?;
         let JobRequest { model: other, analysis } = differing;
         let mut model = first.model.clone();

@@ -88,7 +88,7 @@ fn members_stand_in_lines_of_their_own() {
     let json = ConvertedModel::new(&mesh, None).expect("a model").json().expect("JSON");
     let nodes = r#""nodes": ["1", "2", "3"]"#;
     let rest = r#""material": "material", "plane": "axisymmetric""#;
-    let element = format!(r#"{{"kind": "triangle3", "name": "7", {nodes}, {rest}}}"#);
+    let element = format!(r#"{{"kind": "triangle3", "name": "e7", {nodes}, {rest}}}"#);
     let expected = format!(
         "{{\n \"model\": {{\n  \"dimension\": 2,\n  \"nodes\": {{\n   \"1\": [0.0, 0.0],\n   \"2\": [1.0, 0.0],\n   \
          \"3\": [0.0, 1.0]\n  }},\n  \"elements\": [\n   {element}\n  ],\n  \"stages\": [\n   \

@@ -145,6 +145,9 @@ pub(super) fn surfaces(scope: &Scope, mistakes: &mut Mistakes) {
     for ((name, surface), faces) in scope.model.surfaces.iter().zip(surface_faces(scope.model)) {
         let at = at.member(name);
         proper_name(name, &at, mistakes);
+        if scope.model.sets.contains_key(name) {
+            mistakes.add(&at, || format!("a set has the name {}, too; `@` has to tell them apart", quoted(name)));
+        }
         let at = at.member("faces");
         if surface.faces.is_empty() {
             mistakes.add(&at, || "the surface has no face; one or more are expected");

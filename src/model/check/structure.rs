@@ -19,6 +19,11 @@ pub(super) fn nodes(scope: &Scope, mistakes: &mut Mistakes) {
     for (name, position) in &scope.model.nodes {
         let at = at.member(name);
         proper_name(name, &at, mistakes);
+        if name.starts_with('@') {
+            mistakes.add(&at, || {
+                format!("found {}; a name without `@` at its start is expected: that names sets", quoted(name))
+            });
+        }
         numbers::vector(position, scope.model.dimension, &at, mistakes);
     }
 }

@@ -2,12 +2,17 @@
 //!
 //! A model is expanded once, after it is read: checks, solver and results know nodes alone.
 
-use crate::model::input::limits::{MAX_CONTACTS, MAX_NODES};
+use crate::model::input::limits::{MAX_CONTACTS, MAX_NAMED_NODES, MAX_NODES};
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{quoted, suggestion};
-use crate::model::request::{Analysis, Contact, Model, NamedSet, Record, RecordedContacts, RecordedSupports, Surface};
+use crate::model::request::{
+    Analysis, Contact, Element, Model, NamedSet, Record, RecordedContacts, RecordedSupports, Surface,
+};
 use crate::model::{InputErrors, JobRequest};
 use indexmap::{IndexMap, IndexSet};
+use std::cell::{Cell, OnceCell, RefCell};
+use std::collections::HashMap;
+use std::rc::Rc;
 
 /// The request with the nodes of sets and surfaces in place of their names, `@name`: in supports, loads, contacts and in what
 /// is recorded. Requests read from JSON are expanded already.
@@ -36,10 +41,11 @@ pub(super) fn expand(model: &mut Model, analysis: &mut Analysis, mistakes: &mut 
     if !uses_sets(model, analysis) {
         return;
     }
-    let groups = Groups::of(model);
+    let Model { surfaces, sets, elements, .. } = model;
+    let groups = Groups::new(surfaces, sets, elements);
     let at = DocumentPlace::ROOT.member("model");
-    let supports = std::mem::take(&mut model.supports);
-    model.supports = groups.map(supports, &at.member("supports"), mistakes, |own, more| {
+    let given = std::mem::take(&mut model.supports);
+    model.supports = groups.map(given, &at.member("supports"), mistakes, |own, more| {
         more.into_iter().for_each(|component| {
             if !own.contains(&component) {
                 own.push(component);
@@ -63,7 +69,7 @@ pub(super) fn expand(model: &mut Model, analysis: &mut Analysis, mistakes: &mut 
     }
 }
 
-fn recorded(groups: &Groups, record: &mut Record, mistakes: &mut Mistakes) {
+fn recorded(groups: &Groups<'_>, record: &mut Record, mistakes: &mut Mistakes) {
     let analysis_at = DocumentPlace::ROOT.member("analysis");
     let at = analysis_at.member("record");
     let listed = |names: &mut Vec<String>, at: &DocumentPlace, mistakes: &mut Mistakes| {
@@ -123,52 +129,83 @@ fn uses_sets(model: &Model, analysis: &Analysis) -> bool {
     model.supports.keys().chain(of_contacts).chain(of_stages).chain(recorded).any(|name| is_group(name))
 }
 
-/// The sets and surfaces of a model by name.
-struct Groups {
-    nodes: IndexMap<String, Vec<String>>,
+/// The sets and surfaces of a model, resolved when they are named first.
+struct Groups<'a> {
+    surfaces: &'a IndexMap<String, Surface>,
+    sets: &'a IndexMap<String, NamedSet>,
+    elements: &'a [Element],
+    /// The places of named elements, where a set of elements is asked for.
+    places: OnceCell<HashMap<&'a str, usize>>,
+    resolved: RefCell<HashMap<String, Rc<[String]>>>,
+    /// How many more nodes names may stand for.
+    left: Cell<usize>,
 }
 
 /// What a name stands for.
-enum Members<'a> {
+enum Members {
     /// Itself.
     Own,
-    Nodes(&'a [String]),
+    Nodes(Rc<[String]>),
     /// Nothing, which has been noted.
     Mistaken,
 }
 
-impl Groups {
-    fn of(model: &Model) -> Self {
-        let mut nodes: IndexMap<String, Vec<String>> = IndexMap::new();
-        for (name, Surface { faces }) in &model.surfaces {
-            let unique: IndexSet<&String> = faces.iter().flatten().collect();
-            nodes.insert(name.clone(), unique.into_iter().cloned().collect());
-        }
-        let places: IndexMap<&str, usize> =
-            model.elements.iter().enumerate().filter_map(|(place, element)| Some((element.name()?, place))).collect();
-        for (name, NamedSet { nodes: own, elements }) in &model.sets {
-            let mut unique: IndexSet<&String> = own.iter().collect();
-            if own.is_empty() {
-                let of_elements = elements.iter().filter_map(|element| places.get(element.as_str()));
-                of_elements.for_each(|place| unique.extend(model.elements[*place].nodes()));
-            }
-            nodes.insert(name.clone(), unique.into_iter().cloned().collect());
-        }
-        Self { nodes }
+impl<'a> Groups<'a> {
+    fn new(
+        surfaces: &'a IndexMap<String, Surface>,
+        sets: &'a IndexMap<String, NamedSet>,
+        elements: &'a [Element],
+    ) -> Self {
+        let (places, resolved) = (OnceCell::new(), RefCell::default());
+        Self { surfaces, sets, elements, places, resolved, left: Cell::new(MAX_NAMED_NODES) }
     }
 
-    fn members(&self, name: &str, at: &DocumentPlace, mistakes: &mut Mistakes) -> Members<'_> {
+    /// The nodes of a set or a surface, each once; `None` where there is neither.
+    fn resolve(&self, group: &str) -> Option<Rc<[String]>> {
+        if let Some(known) = self.resolved.borrow().get(group) {
+            return Some(Rc::clone(known));
+        }
+        let nodes: IndexSet<&String> = match (self.sets.get(group), self.surfaces.get(group)) {
+            (Some(NamedSet { nodes, .. }), _) if !nodes.is_empty() => nodes.iter().collect(),
+            (Some(NamedSet { elements, .. }), _) => {
+                let places = self.places.get_or_init(|| {
+                    let named = self.elements.iter().enumerate();
+                    named.filter_map(|(place, element)| Some((element.name()?, place))).collect()
+                });
+                let found = elements.iter().filter_map(|name| places.get(name.as_str()));
+                found.flat_map(|place| self.elements[*place].nodes()).collect()
+            }
+            (None, Some(Surface { faces })) => faces.iter().flatten().collect(),
+            (None, None) => return None,
+        };
+        let nodes: Rc<[String]> = nodes.into_iter().cloned().collect();
+        self.resolved.borrow_mut().insert(group.to_owned(), Rc::clone(&nodes));
+        Some(nodes)
+    }
+
+    fn members(&self, name: &str, at: &DocumentPlace, mistakes: &mut Mistakes) -> Members {
         let Some(group) = name.strip_prefix('@') else { return Members::Own };
-        match self.nodes.get(group) {
-            Some(nodes) if !nodes.is_empty() => Members::Nodes(nodes),
-            Some(_) => {
-                mistakes.add(at, || format!("the set {} has no nodes", quoted(group)));
-                Members::Mistaken
+        let Some(nodes) = self.resolve(group) else {
+            mistakes.add(at, || {
+                let known = self.sets.keys().chain(self.surfaces.keys()).map(String::as_str);
+                format!("there is no set or surface {}{}", quoted(group), suggestion(group, known))
+            });
+            return Members::Mistaken;
+        };
+        if nodes.is_empty() {
+            mistakes.add(at, || {
+                format!("the set {} has no nodes: it lists none, and no element of the model by name", quoted(group))
+            });
+            return Members::Mistaken;
+        }
+        match self.left.get().checked_sub(nodes.len()) {
+            Some(left) => {
+                self.left.set(left);
+                Members::Nodes(nodes)
             }
             None => {
                 mistakes.add(at, || {
-                    let known = suggestion(group, self.nodes.keys().map(String::as_str));
-                    format!("there is no set or surface {}{known}", quoted(group))
+                    format!("sets stand for more than {MAX_NAMED_NODES} nodes altogether, as many as are taken")
                 });
                 Members::Mistaken
             }
@@ -186,13 +223,12 @@ impl Groups {
         let mut all: IndexMap<String, V> = IndexMap::with_capacity(given.len());
         for (name, value) in given {
             let at = at.member(&name);
-            let single = [name.clone()];
-            let nodes = match self.members(&name, &at, mistakes) {
-                Members::Own => &single[..],
+            let nodes: Rc<[String]> = match self.members(&name, &at, mistakes) {
+                Members::Own => Rc::from([name.clone()]),
                 Members::Nodes(nodes) => nodes,
-                Members::Mistaken => &[],
+                Members::Mistaken => Rc::from([]),
             };
-            for node in nodes {
+            for node in nodes.iter() {
                 match all.get_mut(node) {
                     None => drop(all.insert(node.clone(), value.clone())),
                     Some(own) => {

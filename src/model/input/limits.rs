@@ -17,6 +17,8 @@ pub const MAX_ELEMENTS: usize = 250_000;
 pub const MAX_OBSTACLES: usize = 20_000;
 /// Contacts of a model.
 pub const MAX_CONTACTS: usize = 20_000;
+/// Number of nodes that names of sets and surfaces stand for in a request, counted as often as they are named.
+pub const MAX_NAMED_NODES: usize = 1_000_000;
 /// Up to this number of contacts an increment has a row for each. With more contacts, those out of reach have none unless
 /// requested.
 pub const MAX_ROWS_UNASKED: usize = 100;

@@ -94,6 +94,12 @@ fn mistakes_in_sets_are_told() {
     is_told("/model/stages/0/forces/@top", "another value", |model| {
         model["stages"][0]["forces"] = json!({"d": [1, 0], "@top": [2, 0]});
     });
+    is_told("/model/stages/200/forces/@many", "altogether", |model| {
+        let many: Vec<String> = (0..5000).map(|place| format!("n{place}")).collect();
+        model["sets"]["many"]["nodes"] = json!(many);
+        model["stages"] =
+            (0..1000).map(|stage| json!({"name": format!("{stage}"), "forces": {"@many": [0, 1]}})).collect();
+    });
     // Of elements their nodes, and components of several entries are united.
     let mut model = model();
     model["supports"] = json!({"@part": ["x"], "a": ["y"], "@foot": ["y"]});
