@@ -213,7 +213,7 @@ mod tests {
         let mut document: Value = serde_json::from_str(scenes::find("arch-type-truss").unwrap().request).unwrap();
         document["analysis"] = json!({"max_increments": 5});
         let (mut filled, mut refused) = (0, 0);
-        let sets: [(&[&str], Vec<Vec<Value>>); 8] = [
+        let sets: [(&[&str], Vec<Vec<Value>>); 9] = [
             (&["/model/contacts/0/friction"], vec![vec![json!(0.1)], vec![json!(0.7)], vec![json!("x")]]),
             (&["/model/name"], vec![vec![json!("a/b~\"c")], vec![json!(7)]]),
             (&["/model/dimension"], vec![vec![json!(2)], vec![json!(3)]]),
@@ -235,6 +235,13 @@ mod tests {
                 ]],
             ),
             (&["/model/unknown", "/analysis/mpec/certificate"], vec![vec![json!(1), json!("skip")]]),
+            (
+                &["/model/sets", "/model/supports"],
+                vec![
+                    vec![json!({"foot": {"nodes": ["b0"]}}), json!({"@foot": ["x", "y"]})],
+                    vec![json!({"foot": {"nodes": ["b0", "b1"]}}), json!({"@foot": ["x", "y"]})],
+                ],
+            ),
         ];
         for root in ["model", "analysis"] {
             for (pointers, values) in &sets {

@@ -20,8 +20,8 @@ pub enum PathTable {
     Contacts,
 }
 
-/// Most components of a vector.
-const MOST: usize = AXES.len();
+/// Most components of a vector or of a stress.
+const MOST: usize = 6;
 
 impl PathTable {
     /// All tables, in the order in which they are written.
