@@ -72,7 +72,7 @@ fn nearly_incompressible_material_does_not_lock() {
     // The kinds agree with each other on the limit; a fine mesh of quadratic quadrilaterals is the measure.
     let small = linear(240.565, 0.4999);
     let large = neo_hookean(0.4999);
-    let cases: [(&Arc<dyn ElasticMaterial>, f64, usize); 2] = [(&small, 100.0, 1), (&large, 0.3, 3)];
+    let cases: [(&Arc<dyn ElasticMaterial>, f64, usize); 2] = [(&small, 100.0, 1), (&large, 0.3, 12)];
     for (material, force, steps) in cases {
         let of = |kind, cells, mend| deflection((kind, cells), PLANE_STRAIN, material, (force, steps), mend);
         let exact = of(SolidKind::Quadrilateral8, 16, None);
