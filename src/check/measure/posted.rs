@@ -2,7 +2,7 @@
 
 use crate::check::measure::elements::MeasuredElement;
 use crate::check::measure::obstacles::{MeasuredFrame, MeasuredObstacle};
-use crate::check::measure::solids::solid_loads;
+use crate::check::measure::solids::SolidShares;
 use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::model::request::{JobRequest, Model, PlaneCondition};
 use indexmap::{IndexMap, IndexSet};
@@ -101,12 +101,13 @@ impl Posted {
             let motion = moving.get_index_of(contact.obstacle.as_str());
             Some(PostedContact { node, obstacle, motion, friction: contact.friction })
         };
+        let shares = SolidShares::new(model);
         let scales = load_scales.iter().copied().chain(std::iter::repeat(1.0));
         let stage = |(stage, load_scale): (&crate::model::request::Stage, f64)| PostedStage {
             name: stage.name.clone(),
             forces: pattern(&stage.forces, &|name| model.nodes.get_index_of(name))
                 .into_iter()
-                .chain(solid_loads(model, stage))
+                .chain(shares.loads(stage))
                 .collect(),
             moments: numbered(model, stage.moments.iter().map(|(name, moment)| (name, MeasuredVector::z() * *moment))),
             displacements: pattern(&stage.displacements, &|name| model.nodes.get_index_of(name))

@@ -2,7 +2,7 @@
 
 use crate::continuation::scene::elements::ElementBuilder;
 use crate::continuation::scene::requested_contacts::Reported;
-use crate::continuation::scene::solid_loads;
+use crate::continuation::scene::solid_loads::LoadedSolids;
 use crate::continuation::scene::stage_load::StageLoad;
 use crate::continuation::scene::tolerances::COINCIDENCE_TOLERANCE;
 use crate::mechanics::contact::coulomb::CoulombFriction;
@@ -242,6 +242,7 @@ pub(super) struct ScaledModel<'a> {
     pub analysis: &'a Analysis,
     pub numbers: &'a HashMap<&'a str, usize>,
     pub structure: &'a Structure,
+    pub loaded_solids: &'a LoadedSolids<'a>,
     /// For each contact that is solved for, its contact in the request.
     pub first_contacts: &'a [usize],
     pub length: f64,
@@ -261,23 +262,29 @@ impl ScaledModel<'_> {
         };
         stage.displacements.iter().map(|(name, values)| (self.numbers[name.as_str()], lengths(values))).collect()
     }
+
+    /// The load factor at which the largest load of a stage reaches `resistance`, or its largest motion the length scale.
+    fn natural_load_scale(&self, stage: &request::Stage, resistance: f64, displacements: &[(usize, Vec<f64>)]) -> f64 {
+        let largest = |vectors: &IndexMap<String, Vec<f64>>| vectors.values().map(|v| norm(v)).fold(0.0_f64, f64::max);
+        let largest_moment = stage.moments.values().fold(0.0_f64, |most, moment| most.max(moment.abs()));
+        let on_nodes = largest(&stage.forces).max(largest_moment / self.length);
+        let by_force = resistance / on_nodes.max(self.loaded_solids.largest_resultant(stage));
+        let driven = displacements.iter().map(|(_, values)| norm(values)).fold(0.0_f64, f64::max);
+        let by_motion = self.length / driven.max(largest(&stage.obstacle_motion));
+        let natural = by_force.min(by_motion);
+        if natural.is_finite() { natural } else { 1.0 }
+    }
 }
 
 /// Builds the load of a stage; `resistance` is the force on which its load scale is based.
 pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &ScaledModel<'_>) -> StageLoad {
-    let &ScaledModel { model, analysis, numbers, structure, first_contacts, length, force, stretched } = scaled;
+    let &ScaledModel { model, analysis, numbers, structure, loaded_solids, first_contacts, length, force, stretched } =
+        scaled;
     // Forces and motions of supports, and shifts of obstacles.
     let held = budget::take::<f64>(2 * structure.freedoms() + 3 * first_contacts.len());
     budget::spend(structure.freedoms());
-    let largest = |vectors: &IndexMap<String, Vec<f64>>| vectors.values().map(|v| norm(v)).fold(0.0_f64, f64::max);
-    let largest_moment = stage.moments.values().fold(0.0_f64, |most, moment| most.max(moment.abs()));
-    let on_nodes = largest(&stage.forces).max(largest_moment / length);
-    let by_force = resistance / on_nodes.max(solid_loads::largest_resultant(stage, scaled));
     let displacements: Vec<(usize, Vec<f64>)> = scaled.prescribed(stage);
-    let driven = displacements.iter().map(|(_, values)| norm(values)).fold(0.0_f64, f64::max);
-    let by_motion = length / driven.max(largest(&stage.obstacle_motion));
-    let natural = by_force.min(by_motion);
-    let natural = if natural.is_finite() { natural } else { 1.0 };
+    let natural = scaled.natural_load_scale(stage, resistance, &displacements);
     let load_scale = analysis.arc_length.load_scale.unwrap_or(natural);
     let enlarged = stretched.max(load_scale / natural).max(1.0);
     let mut forces = vec![0.0; structure.freedoms()];
@@ -285,9 +292,10 @@ pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scal
         let freedoms = structure.translations_of(numbers[name.as_str()]);
         freedoms.zip(vector).for_each(|(freedom, value)| forces[freedom] = value * load_scale / force);
     }
-    for (freedom, value) in solid_loads::nodal_forces(stage, scaled) {
-        forces[freedom] += value * load_scale / force;
-    }
+    loaded_solids.each_force(stage, |node, of_node| {
+        let freedoms = structure.translations_of(node);
+        freedoms.zip(of_node).for_each(|(freedom, value)| forces[freedom] += value * load_scale / force);
+    });
     for (name, moment) in &stage.moments {
         let rotation = structure.numbering.rotations_of(numbers[name.as_str()]).start;
         forces[rotation] = moment * load_scale / force / length;

@@ -39,6 +39,7 @@ use build::{Contacts, ScaledModel, build_contacts, build_stage, build_structure,
 use recorded_forces::RecordedForces;
 pub(crate) use requested_contacts::Reported;
 use scales::{RequestScales, scales};
+use solid_loads::LoadedSolids;
 pub(crate) use stage_load::StageLoad;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -130,7 +131,8 @@ impl Scene {
         let model = &request.model;
         let numbers: HashMap<&str, usize> =
             model.nodes.keys().enumerate().map(|(number, name)| (name.as_str(), number)).collect();
-        let scales = scales(model, &request.analysis, &numbers, like);
+        let loaded_solids = LoadedSolids::new(model, &numbers);
+        let scales = scales(model, &request.analysis, &numbers, &loaded_solids, like);
         let RequestScales { length, force, resistances, stretched, structure } = scales;
         let mut structure = build_structure(model, &numbers, length, force, structure.as_ref().or(like));
         if !parts.elements.is_empty() {
@@ -163,6 +165,7 @@ impl Scene {
             analysis: &request.analysis,
             numbers: &numbers,
             structure: &structure,
+            loaded_solids: &loaded_solids,
             first_contacts: &first_contacts,
             length,
             force,

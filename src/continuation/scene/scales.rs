@@ -4,6 +4,7 @@ use crate::continuation::scene::build::{
     Contacts, ScaledModel, build_contacts, build_stage, build_structure, first_contacts, norm,
 };
 use crate::continuation::scene::characteristic_stiffness::resisting;
+use crate::continuation::scene::solid_loads::LoadedSolids;
 use crate::continuation::scene::solid_scales::solid_scales;
 use crate::continuation::scene::tolerances::{LARGEST_STIFFNESS_RATIO, SIMILAR_STIFFNESS_RATIO};
 use crate::mechanics::structure::Structure;
@@ -150,6 +151,7 @@ pub(super) fn scales(
     model: &Model,
     analysis: &Analysis,
     numbers: &HashMap<&str, usize>,
+    loaded_solids: &LoadedSolids<'_>,
     like: Option<&Structure>,
 ) -> RequestScales {
     if let Some(bending) = least_bending(model) {
@@ -159,7 +161,7 @@ pub(super) fn scales(
         let resistances = vec![force; model.stages.len()];
         return RequestScales { length, force, resistances, stretched: length / own, structure: None };
     }
-    if let Some(scales) = solid_scales(model, analysis, numbers, like) {
+    if let Some(scales) = solid_scales(model, analysis, numbers, loaded_solids, like) {
         return scales;
     }
     let sizes = Sizes::of(model);
@@ -173,8 +175,17 @@ pub(super) fn scales(
     let Contacts { contacts, reported, .. } = build_contacts(model, numbers, length, &structure, &mut Vec::new());
     let first_contacts = first_contacts(&reported, contacts.len());
     let first_contacts = &first_contacts[..];
-    let scaled =
-        ScaledModel { model, analysis, numbers, structure: &structure, first_contacts, length, force, stretched: 1.0 };
+    let scaled = ScaledModel {
+        model,
+        analysis,
+        numbers,
+        structure: &structure,
+        loaded_solids,
+        first_contacts,
+        length,
+        force,
+        stretched: 1.0,
+    };
     // The unit of an axial stiffness, or of a spring's stiffness.
     let unit = if sizes.bars.is_empty() { force / length } else { force };
     let by_stage: Vec<Option<f64>> = model

@@ -1,74 +1,97 @@
-//! The loads of a stage on solids: consistent nodal forces of body forces and dead tractions.
+//! The loads of stages on solids: consistent nodal forces of body forces and dead tractions.
+//!
+//! ```text
+//! f_a = V_a b,   V_a = ∫ N_a dV over the solids of a material;      f_a = A_a t,   A_a = ∫ N_a dA over a surface
+//! ```
+//!
+//! The volumes and areas of the nodes are computed once for all stages.
 
-use crate::continuation::scene::build::{ScaledModel, norm};
+use crate::continuation::scene::build::norm;
 use crate::continuation::scene::elements::ElementBuilder;
 use crate::mechanics::structure::elements::solid::any::each_traction_force;
-use crate::model::request::{Element, Stage};
+use crate::model::request::{Element, Model, Stage};
 use crate::model::solids::data;
 use crate::model::solids::faces::{FaceMatch, SolidFace, surface_faces};
-use indexmap::IndexMap;
+use std::collections::{BTreeMap, HashMap};
 
-/// Calls `each` with the name of a load, node and force, in the user's units, of the body forces and tractions of a stage.
-fn each_nodal_force<'a>(stage: &'a Stage, scaled: &ScaledModel<'_>, each: &mut dyn FnMut(&'a str, usize, [f64; 3])) {
-    let &ScaledModel { model, numbers, .. } = scaled;
-    if !stage.body_forces.is_empty() {
-        let builder = ElementBuilder::new(model, numbers, 1.0, 1.0);
-        for element in &model.elements {
-            let Some((_, solid)) = element.solid() else { continue };
-            let Some((name, density)) = stage.body_forces.get_key_value(&solid.material) else { continue };
-            let Some(built) = builder.solid(element) else { continue };
-            built.each_body_force(padded(density), &mut |place, force| {
-                each(name, numbers[solid.nodes[place].as_str()], force);
-            });
+/// What each node stands for: a volume or an area, in the user's units.
+type NodalShares = BTreeMap<usize, f64>;
+
+/// The volumes of nodes by material and their areas by surface, of those that some stage loads.
+#[derive(Debug, Default)]
+pub(super) struct LoadedSolids<'a> {
+    volumes: HashMap<&'a str, NodalShares>,
+    areas: HashMap<&'a str, NodalShares>,
+}
+
+/// A component of unit size: its nodal forces are the shares of the nodes.
+const UNIT: [f64; 3] = [1.0, 0.0, 0.0];
+
+impl<'a> LoadedSolids<'a> {
+    pub fn new(model: &'a Model, numbers: &'a HashMap<&'a str, usize>) -> Self {
+        let mut loaded = Self::default();
+        for stage in &model.stages {
+            loaded.volumes.extend(stage.body_forces.keys().map(|name| (name.as_str(), NodalShares::new())));
+            loaded.areas.extend(stage.tractions.keys().map(|name| (name.as_str(), NodalShares::new())));
         }
-    }
-    if stage.tractions.is_empty() {
-        return;
-    }
-    for (name, faces) in model.surfaces.keys().zip(surface_faces(model)) {
-        let Some((name, traction)) = stage.tractions.get_key_value(name) else { continue };
-        for face in faces {
-            if let FaceMatch::Face(face) = face {
-                traction_forces(&face, padded(traction), scaled, &mut |node, force| each(name, node, force));
+        if !loaded.volumes.is_empty() {
+            let builder = ElementBuilder::new(model, numbers, 1.0, 1.0);
+            for element in &model.elements {
+                let Some((_, solid)) = element.solid() else { continue };
+                let Some(shares) = loaded.volumes.get_mut(solid.material.as_str()) else { continue };
+                let Some(built) = builder.solid(element) else { continue };
+                built.each_body_force(UNIT, &mut |place, [volume, ..]| {
+                    *shares.entry(numbers[solid.nodes[place].as_str()]).or_default() += volume;
+                });
             }
         }
+        if !loaded.areas.is_empty() {
+            for (name, faces) in model.surfaces.keys().zip(surface_faces(model)) {
+                let Some(shares) = loaded.areas.get_mut(name.as_str()) else { continue };
+                for face in faces {
+                    if let FaceMatch::Face(face) = face {
+                        add_areas(model, &face, shares);
+                    }
+                }
+            }
+        }
+        loaded
+    }
+
+    /// The loads of a stage: each with the shares of the nodes and the force per volume or area.
+    fn loads(&self, stage: &Stage) -> impl Iterator<Item = (&NodalShares, [f64; 3])> {
+        let bodies = stage
+            .body_forces
+            .iter()
+            .filter_map(|(name, force)| Some((self.volumes.get(name.as_str())?, padded(force))));
+        let tractions =
+            stage.tractions.iter().filter_map(|(name, force)| Some((self.areas.get(name.as_str())?, padded(force))));
+        bodies.chain(tractions)
+    }
+
+    /// Calls `each` with node and force of a stage's loads, in the user's units.
+    pub fn each_force(&self, stage: &Stage, mut each: impl FnMut(usize, [f64; 3])) {
+        for (shares, density) in self.loads(stage) {
+            shares.iter().for_each(|(node, share)| each(*node, density.map(|value| share * value)));
+        }
+    }
+
+    /// The largest resultant of a load of a stage, in the user's units; it depends neither on the mesh nor on the axes.
+    pub fn largest_resultant(&self, stage: &Stage) -> f64 {
+        let resultant = |(shares, density): (&NodalShares, [f64; 3])| norm(&density) * shares.values().sum::<f64>();
+        self.loads(stage).map(resultant).fold(0.0, f64::max)
     }
 }
 
-fn traction_forces(
-    face: &SolidFace,
-    traction: [f64; 3],
-    scaled: &ScaledModel<'_>,
-    each: &mut dyn FnMut(usize, [f64; 3]),
-) {
-    let model = scaled.model;
+/// Adds the areas of the nodes of a face.
+fn add_areas(model: &Model, face: &SolidFace, shares: &mut NodalShares) {
     let Some((_, solid)) = model.elements.get(face.element).and_then(Element::solid) else { return };
     let idealisation = data::idealisation(solid, model.dimension, 1.0);
     let places: Vec<&[f64]> = face.nodes.iter().map(|node| model.nodes[*node].as_slice()).collect();
     let positions = data::positions(&places, idealisation, 1.0);
-    each_traction_force(face.kind, &positions, idealisation, traction, &mut |place, force| {
-        each(face.nodes[place], force);
+    each_traction_force(face.kind, &positions, idealisation, UNIT, &mut |place, [area, ..]| {
+        *shares.entry(face.nodes[place]).or_default() += area;
     });
-}
-
-/// The nodal forces of a stage's loads on solids, by degree of freedom, in the user's units.
-pub(super) fn nodal_forces(stage: &Stage, scaled: &ScaledModel<'_>) -> Vec<(usize, f64)> {
-    let mut forces = Vec::new();
-    each_nodal_force(stage, scaled, &mut |_, node, force| {
-        let freedoms = scaled.structure.translations_of(node);
-        forces.extend(freedoms.zip(force).filter(|(_, value)| *value != 0.0));
-    });
-    forces
-}
-
-/// The largest resultant of a stage's body forces and tractions, by material and by surface, in the user's units; it depends
-/// neither on the mesh nor on the axes.
-pub(super) fn largest_resultant(stage: &Stage, scaled: &ScaledModel<'_>) -> f64 {
-    let mut sums: IndexMap<&str, [f64; 3]> = IndexMap::new();
-    each_nodal_force(stage, scaled, &mut |load, _, force| {
-        sums.entry(load).or_default().iter_mut().zip(force).for_each(|(sum, value)| *sum += value);
-    });
-    sums.values().map(|sum| norm(sum)).fold(0.0, f64::max)
 }
 
 fn padded(vector: &[f64]) -> [f64; 3] {

@@ -9,6 +9,7 @@ use crate::continuation::scene::build::{ScaledModel, build_contacts, build_stage
 use crate::continuation::scene::characteristic_stiffness::load_at_unit_displacement;
 use crate::continuation::scene::elements::ElementBuilder;
 use crate::continuation::scene::scales::{MOST_STAGES, RequestScales, expected_load_factor};
+use crate::continuation::scene::solid_loads::LoadedSolids;
 use crate::mechanics::structure::Structure;
 use crate::model::check::scope::size;
 use crate::model::request::{Analysis, Material, Model};
@@ -33,6 +34,7 @@ pub(super) fn solid_scales(
     model: &Model,
     analysis: &Analysis,
     numbers: &HashMap<&str, usize>,
+    loaded_solids: &LoadedSolids<'_>,
     like: Option<&Structure>,
 ) -> Option<RequestScales> {
     if !model.elements.iter().any(|element| element.solid().is_some()) {
@@ -47,6 +49,7 @@ pub(super) fn solid_scales(
         analysis,
         numbers,
         structure: &structure,
+        loaded_solids,
         first_contacts,
         length: own,
         force,

@@ -178,6 +178,11 @@ impl<'a> Groups<'a> {
             (None, Some(Surface { faces })) => faces.iter().flatten().collect(),
             (None, None) => return None,
         };
+        // Beyond the limit no name stands for anything more, and nothing more is kept.
+        if nodes.len() > self.left.get() {
+            self.left.set(0);
+            return Some(Rc::from([]));
+        }
         let nodes: Rc<[String]> = nodes.into_iter().cloned().collect();
         self.resolved.borrow_mut().insert(group.to_owned(), Rc::clone(&nodes));
         Some(nodes)
@@ -185,6 +190,11 @@ impl<'a> Groups<'a> {
 
     fn members(&self, name: &str, at: &DocumentPlace, mistakes: &mut Mistakes) -> Members {
         let Some(group) = name.strip_prefix('@') else { return Members::Own };
+        let too_many = || format!("sets stand for more than {MAX_NAMED_NODES} nodes altogether, as many as are taken");
+        if self.left.get() == 0 {
+            mistakes.add(at, too_many);
+            return Members::Mistaken;
+        }
         let Some(nodes) = self.resolve(group) else {
             mistakes.add(at, || {
                 let known = self.sets.keys().chain(self.surfaces.keys()).map(String::as_str);
@@ -192,6 +202,10 @@ impl<'a> Groups<'a> {
             });
             return Members::Mistaken;
         };
+        if self.left.get() == 0 {
+            mistakes.add(at, too_many);
+            return Members::Mistaken;
+        }
         if nodes.is_empty() {
             mistakes.add(at, || {
                 format!("the set {} has no nodes: it lists none, and no element of the model by name", quoted(group))
@@ -204,9 +218,8 @@ impl<'a> Groups<'a> {
                 Members::Nodes(nodes)
             }
             None => {
-                mistakes.add(at, || {
-                    format!("sets stand for more than {MAX_NAMED_NODES} nodes altogether, as many as are taken")
-                });
+                self.left.set(0);
+                mistakes.add(at, too_many);
                 Members::Mistaken
             }
         }

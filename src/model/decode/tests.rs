@@ -74,16 +74,7 @@ fn element() -> impl Strategy<Value = Element> {
         .prop_map(|(nodes, stiffness, name)| Element::RotationalSpring { nodes, stiffness, name });
     let plane = one_of([PlaneCondition::Strain, PlaneCondition::Stress, PlaneCondition::Axisymmetric]);
     let locking = one_of([LockingMend::None, LockingMend::MeanGradient, LockingMend::MeanDilatation]);
-    let kind = one_of([
-        SolidKind::Triangle3,
-        SolidKind::Triangle6,
-        SolidKind::Quadrilateral4,
-        SolidKind::Quadrilateral8,
-        SolidKind::Tetrahedron4,
-        SolidKind::Tetrahedron10,
-        SolidKind::Hexahedron8,
-        SolidKind::Hexahedron20,
-    ]);
+    let kind = one_of(SolidKind::ALL);
     let solid = (kind, vec(name(), 0..4), name(), of(plane), of(number()), of(locking), of(name())).prop_map(
         |(kind, nodes, material, plane, thickness, locking, name)| {
             Element::of_solid(kind, Solid { nodes, material, plane, thickness, locking, name })

@@ -1,9 +1,11 @@
-//! Body forces and tractions as nodal forces per unit load factor: `∫ N_a b dV` and `∫ N_a t dA`.
+//! Body forces and tractions as nodal forces per unit load factor: `b ∫ N_a dV` and `t ∫ N_a dA`.
 
+use crate::check::measure::solids::shapes::Shape;
 use crate::check::measure::solids::{PlacedSolid, PlaneOf, jacobian, padded, shapes};
 use crate::model::request::{Element, Model, SolidKind, Stage};
 use crate::model::solids::faces::{FaceMatch, SolidFace, surface_faces};
 use nalgebra::Vector3;
+use std::collections::{BTreeMap, HashMap};
 
 /// Gauss's rule of four points on `[-1, 1]`.
 const LINE: [(f64, f64); 4] = [
@@ -13,47 +15,71 @@ const LINE: [(f64, f64); 4] = [
     (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
 ];
 
-/// The nodal forces of a stage's loads on solids.
-pub fn solid_loads(model: &Model, stage: &Stage) -> Vec<(usize, Vector3<f64>)> {
-    let mut forces = Vec::new();
-    for (kind, solid) in model.elements.iter().filter_map(Element::solid) {
-        let Some(density) = stage.body_forces.get(&solid.material) else { continue };
-        let Some(placed) = PlacedSolid::new(model, solid) else { continue };
-        let (dimension, _) = shapes::form(kind);
-        let shape = shapes::Shape::of(kind);
-        for (place, weight) in shapes::rule(kind, placed.plane == PlaneOf::Revolution) {
-            let here = shape.at(place);
-            let volume = weight * jacobian(&here.slopes, &placed.places, dimension).determinant();
-            let around = placed.around(&here.values);
-            let of_nodes = placed.nodes.iter().zip(&here.values);
-            forces.extend(of_nodes.map(|(node, value)| (*node, padded(density) * (value * volume * around))));
+/// The volumes `∫ N_a dV` of nodes by material and their areas `∫ N_a dA` by surface, as far as some stage loads them.
+pub struct SolidShares<'a> {
+    volumes: HashMap<&'a str, BTreeMap<usize, f64>>,
+    areas: HashMap<&'a str, BTreeMap<usize, f64>>,
+}
+
+impl<'a> SolidShares<'a> {
+    pub fn new(model: &'a Model) -> Self {
+        let mut shares = Self { volumes: HashMap::new(), areas: HashMap::new() };
+        for stage in &model.stages {
+            shares.volumes.extend(stage.body_forces.keys().map(|name| (name.as_str(), BTreeMap::new())));
+            shares.areas.extend(stage.tractions.keys().map(|name| (name.as_str(), BTreeMap::new())));
         }
-    }
-    if stage.tractions.is_empty() {
-        return forces;
-    }
-    for (name, faces) in model.surfaces.keys().zip(surface_faces(model)) {
-        let Some(traction) = stage.tractions.get(name) else { continue };
-        for face in faces {
-            if let FaceMatch::Face(face) = face {
-                forces.extend(face_forces(model, &face, &padded(traction)));
+        for (kind, solid) in model.elements.iter().filter_map(Element::solid) {
+            let Some(volumes) = shares.volumes.get_mut(solid.material.as_str()) else { continue };
+            let Some(placed) = PlacedSolid::new(model, solid) else { continue };
+            let (dimension, _) = shapes::form(kind);
+            let shape = Shape::of(kind);
+            for (place, weight) in shapes::rule(kind, placed.plane == PlaneOf::Revolution) {
+                let here = shape.at(place);
+                let volume = weight * jacobian(&here.slopes, &placed.places, dimension).determinant();
+                let around = placed.around(&here.values);
+                for (node, value) in placed.nodes.iter().zip(&here.values) {
+                    *volumes.entry(*node).or_default() += value * volume * around;
+                }
             }
         }
+        if !shares.areas.is_empty() {
+            for (name, faces) in model.surfaces.keys().zip(surface_faces(model)) {
+                let Some(areas) = shares.areas.get_mut(name.as_str()) else { continue };
+                for face in faces {
+                    if let FaceMatch::Face(face) = face {
+                        for (node, area) in face_areas(model, &face) {
+                            *areas.entry(node).or_default() += area;
+                        }
+                    }
+                }
+            }
+        }
+        shares
     }
-    forces
+
+    /// The nodal forces of a stage's loads on solids.
+    pub fn loads(&self, stage: &Stage) -> Vec<(usize, Vector3<f64>)> {
+        let bodies = stage.body_forces.iter().map(|(name, force)| (self.volumes.get(name.as_str()), force));
+        let tractions = stage.tractions.iter().map(|(name, force)| (self.areas.get(name.as_str()), force));
+        let of_load = |(shares, force): (Option<&BTreeMap<usize, f64>>, &Vec<f64>)| {
+            let force = padded(force);
+            shares.into_iter().flatten().map(move |(node, share)| (*node, force * *share)).collect::<Vec<_>>()
+        };
+        bodies.chain(tractions).flat_map(of_load).collect()
+    }
 }
 
 /// Faces in space are plane solids of their own; on a triangle the rule of the square is collapsed onto it (a rule of high
 /// degree), so that no rule is shared with the element's.
-fn face_forces(model: &Model, face: &SolidFace, traction: &Vector3<f64>) -> Vec<(usize, Vector3<f64>)> {
+fn face_areas(model: &Model, face: &SolidFace) -> Vec<(usize, f64)> {
     let Some((_, solid)) = model.elements.get(face.element).and_then(Element::solid) else { return Vec::new() };
     let Some(solid) = PlacedSolid::new(model, solid) else { return Vec::new() };
     let places: Vec<Vector3<f64>> = face.nodes.iter().map(|node| padded(&model.nodes[*node])).collect();
     let on_face = PlacedSolid { nodes: face.nodes.clone(), places: places.clone(), ..solid };
-    let mut forces = vec![Vector3::zeros(); face.nodes.len()];
+    let mut areas = vec![0.0; face.nodes.len()];
     let mut add = |values: &[f64], area: f64| {
         let size = area * on_face.around(values);
-        forces.iter_mut().zip(values).for_each(|(force, value)| *force += traction * (size * value));
+        areas.iter_mut().zip(values).for_each(|(own, value)| *own += size * value);
     };
     let kind = match (model.dimension, face.nodes.len()) {
         (2, _) => None,
@@ -71,7 +97,7 @@ fn face_forces(model: &Model, face: &SolidFace, traction: &Vector3<f64>) -> Vec<
             }
         }
         Some(kind) => {
-            let shape = shapes::Shape::of(kind);
+            let shape = Shape::of(kind);
             let (_, is_simplex) = shapes::form(kind);
             for (x, by_x) in LINE {
                 for (y, by_y) in LINE {
@@ -91,7 +117,7 @@ fn face_forces(model: &Model, face: &SolidFace, traction: &Vector3<f64>) -> Vec<
             }
         }
     }
-    face.nodes.iter().copied().zip(forces).collect()
+    face.nodes.iter().copied().zip(areas).collect()
 }
 
 /// The functions of a segment of two nodes, or of three with the middle one last, and their slopes.

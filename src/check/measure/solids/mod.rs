@@ -14,7 +14,7 @@ mod shapes;
 #[cfg(test)]
 mod tests;
 
-pub(super) use loads::solid_loads;
+pub(super) use loads::SolidShares;
 
 use crate::model::request::{LockingMend, Model, PlaneCondition, Solid, SolidKind};
 use hourglass::MeanConstants;

@@ -5,6 +5,7 @@
 
 use crate::model::request::SolidKind;
 use nalgebra::DMatrix;
+use std::sync::OnceLock;
 
 /// Natural coordinates; what a kind does not have is 0.
 pub type NaturalPlace = [f64; 3];
@@ -91,14 +92,18 @@ fn coefficients(kind: SolidKind) -> DMatrix<f64> {
 }
 
 /// Shape functions of a kind, to be evaluated anywhere.
+#[derive(Debug)]
 pub struct Shape {
     monomials: Vec<[i32; 3]>,
     coefficients: DMatrix<f64>,
 }
 
 impl Shape {
-    pub fn of(kind: SolidKind) -> Self {
-        Self { monomials: monomials(kind), coefficients: coefficients(kind) }
+    /// Computed once for each kind.
+    pub fn of(kind: SolidKind) -> &'static Self {
+        static KNOWN: [OnceLock<Shape>; SolidKind::ALL.len()] = [const { OnceLock::new() }; SolidKind::ALL.len()];
+        let new = || Self { monomials: monomials(kind), coefficients: coefficients(kind) };
+        KNOWN[kind as usize].get_or_init(new)
     }
 
     pub fn at(&self, place: NaturalPlace) -> ShapeValues {

@@ -8,17 +8,6 @@ use crate::model::request::{Element, LockingMend, Material, Model, PlaneConditio
 use crate::model::solids::data;
 use nalgebra::Vector3;
 
-const KINDS: [SolidKind; 8] = [
-    SolidKind::Triangle3,
-    SolidKind::Triangle6,
-    SolidKind::Quadrilateral4,
-    SolidKind::Quadrilateral8,
-    SolidKind::Tetrahedron4,
-    SolidKind::Tetrahedron10,
-    SolidKind::Hexahedron8,
-    SolidKind::Hexahedron20,
-];
-
 /// Pseudo-random numbers between -1 and 1.
 struct Numbers(u64);
 
@@ -102,7 +91,7 @@ fn difference(kind: SolidKind, plane: PlaneCondition, mend: LockingMend, materia
 #[test]
 fn the_measure_agrees_with_the_elements() {
     let (mut worst, mut cases) = (0.0_f64, 0);
-    for kind in KINDS {
+    for kind in SolidKind::ALL {
         let planes = [PlaneCondition::Strain, PlaneCondition::Stress, PlaneCondition::Axisymmetric];
         for plane in &planes[..if kind.dimension() == 2 { 3 } else { 1 }] {
             for mend in [LockingMend::None, LockingMend::MeanDilatation, LockingMend::MeanGradient] {

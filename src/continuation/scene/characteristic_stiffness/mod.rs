@@ -44,16 +44,8 @@ const MOST_CLOSINGS: usize = 2;
 /// The stiffness of the elements that resist a stage's load pattern, as an axial stiffness, dimensionless; `None` where
 /// no movable element resists it.
 pub(super) fn resisting(structure: &Structure, contacts: &[ContactPair], pattern: &LoadPattern) -> Option<f64> {
-    let held = contacts.iter().map(|contact| contact.gap(&[0.0; 3]) <= CLOSED_GAP).collect();
     let still = vec![0.0; structure.freedoms()];
-    let mut response = StiffnessEstimate {
-        structure,
-        contacts,
-        pattern,
-        stiffness_at: stiffness_at(structure, &still),
-        usual: usual_stiffness(structure, &still),
-        held,
-    };
+    let mut response = StiffnessEstimate::new(structure, contacts, pattern, &still);
     let mut stiffest: Option<f64> = None;
     for _ in 0..=MOST_CLOSINGS {
         let Some(first) = response.at_first_order(&still) else { break };
@@ -76,16 +68,8 @@ pub(super) fn load_at_unit_displacement(
     contacts: &[ContactPair],
     pattern: &LoadPattern,
 ) -> Option<f64> {
-    let held = contacts.iter().map(|contact| contact.gap(&[0.0; 3]) <= CLOSED_GAP).collect();
     let still = vec![0.0; structure.freedoms()];
-    let estimate = StiffnessEstimate {
-        structure,
-        contacts,
-        pattern,
-        stiffness_at: stiffness_at(structure, &still),
-        usual: usual_stiffness(structure, &still),
-        held,
-    };
+    let estimate = StiffnessEstimate::new(structure, contacts, pattern, &still);
     let motion = estimate.at_first_order(&still)?;
     let is_moved = estimate.mean(&motion, false).is_some();
     Some(motion.load.abs()).filter(|load| is_moved && *load > 0.0 && load.is_finite())
@@ -157,6 +141,15 @@ impl Tie {
 
     fn energy(&self, motion: &Motion) -> f64 {
         self.stretching.stiffness.abs() * self.stretch(motion).powi(2)
+    }
+}
+
+impl<'a> StiffnessEstimate<'a> {
+    /// Of the undeformed structure, with the closed contacts fixed; `still`: no displacements.
+    fn new(structure: &'a Structure, contacts: &'a [ContactPair], pattern: &'a LoadPattern, still: &[f64]) -> Self {
+        let held = contacts.iter().map(|contact| contact.gap(&[0.0; 3]) <= CLOSED_GAP).collect();
+        let (stiffness_at, usual) = (stiffness_at(structure, still), usual_stiffness(structure, still));
+        Self { structure, contacts, pattern, stiffness_at, usual, held }
     }
 }
 

@@ -283,7 +283,14 @@ impl Element {
     /// The element with a name, by which results and [`Record`](crate::model::request::Record) refer to it.
     #[must_use]
     pub fn with_name(mut self, given: impl Into<String>) -> Self {
-        *self.name_mut() = Some(given.into());
+        let given = Some(given.into());
+        match &mut self {
+            Self::Bar { name, .. }
+            | Self::Spring { name, .. }
+            | Self::Beam { name, .. }
+            | Self::RotationalSpring { name, .. } => *name = given,
+            solid => solid.solid_mut().into_iter().for_each(|solid| solid.name.clone_from(&given)),
+        }
         self
     }
 
@@ -295,23 +302,6 @@ impl Element {
             | Self::Beam { name, .. }
             | Self::RotationalSpring { name, .. } => name.as_deref(),
             _ => self.solid().and_then(|(_, solid)| solid.name.as_deref()),
-        }
-    }
-
-    fn name_mut(&mut self) -> &mut Option<String> {
-        match self {
-            Self::Bar { name, .. }
-            | Self::Spring { name, .. }
-            | Self::Beam { name, .. }
-            | Self::RotationalSpring { name, .. } => name,
-            Self::Triangle3(solid)
-            | Self::Triangle6(solid)
-            | Self::Quadrilateral4(solid)
-            | Self::Quadrilateral8(solid)
-            | Self::Tetrahedron4(solid)
-            | Self::Tetrahedron10(solid)
-            | Self::Hexahedron8(solid)
-            | Self::Hexahedron20(solid) => &mut solid.name,
         }
     }
 

@@ -67,6 +67,18 @@ pub enum LockingMend {
 pub const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 
 impl SolidKind {
+    /// All kinds, in the order of their declaration.
+    pub const ALL: [Self; 8] = [
+        Self::Triangle3,
+        Self::Triangle6,
+        Self::Quadrilateral4,
+        Self::Quadrilateral8,
+        Self::Tetrahedron4,
+        Self::Tetrahedron10,
+        Self::Hexahedron8,
+        Self::Hexahedron20,
+    ];
+
     /// Number of nodes.
     pub fn nodes(self) -> usize {
         match self {

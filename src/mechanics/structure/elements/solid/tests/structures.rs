@@ -140,7 +140,7 @@ impl Solids {
                 let change = matrix.solve(right);
                 displacement.iter_mut().zip(&change).for_each(|(value, change)| *value += change);
                 let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| value.abs().max(most));
-                is_converged = largest(&change) <= 1e-9 * largest(&displacement);
+                is_converged = largest(&change) <= 1e-10 * largest(&displacement);
                 if is_converged {
                     break;
                 }
