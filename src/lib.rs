@@ -143,10 +143,11 @@ pub use continuation::path::checkpoint::CheckpointError;
 pub use mechanics::structure::elements::bar::Strain;
 pub use model::decode::expand_sets;
 pub use model::request::{
-    Analysis, ArcLength, Certificate, Component, Contact, ContactRange, DisplacementBound, ElasticConstants, Element,
-    ElementReference, Events, Explore, ForceRange, JobRequest, LoadSign, LockingMend, Material, Method, Model, Mpec,
-    NamedSet, Obstacle, PlaneCondition, Record, RecordedContact, RecordedContacts, RecordedElements, RecordedSupports,
-    Regularised, Side, Solid, SolidKind, Stage, Surface, Units, Until,
+    Analysis, ArcLength, Certificate, Component, Contact, ContactRange, ContentEncoding, DisplacementBound,
+    ElasticConstants, Element, ElementReference, Events, Explore, ForceRange, JobRequest, LoadSign, LockingMend,
+    Material, Mesh, MeshFormat, MeshGroup, Method, Model, Mpec, NamedSet, Obstacle, PlaneCondition, Record,
+    RecordedContact, RecordedContacts, RecordedElements, RecordedSupports, Regularised, Side, Solid, SolidKind, Stage,
+    Surface, Units, Until,
 };
 pub use model::{InputError, InputErrors, read};
 pub use resources::cancel::CancelFlag;

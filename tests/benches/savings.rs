@@ -144,7 +144,7 @@ fn with_far_contacts(mut request: JobRequest, most: usize) -> JobRequest {
         center[0] += reach * index as f64;
         let obstacle = format!("far {index}");
         model.obstacles.insert(obstacle.clone(), Obstacle::Ball { center, radius: reach, side: Side::Outside });
-        model.contacts.push(Contact { node: nodes[index % nodes.len()].clone(), obstacle, friction: 0.5 });
+        model.contacts.push(Contact::new(nodes[index % nodes.len()].clone(), obstacle, 0.5));
     }
     request
 }

@@ -140,8 +140,25 @@ pub fn random_solid(seed: u64) -> JobRequest {
             ]);
         }
     }
+    if seed.is_multiple_of(3) {
+        follow(&mut model);
+    }
     typed(json!({
         "model": model,
         "analysis": {"arc_length": {"initial": 0.05, "min": 1e-9, "max": 0.2}, "max_increments": 40}
     }))
+}
+
+/// Turns tractions across the right side into pressures that follow it.
+fn follow(model: &mut Value) {
+    for stage in model["stages"].as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut) {
+        let Some(tractions) = stage.get_mut("tractions").and_then(Value::as_object_mut) else { continue };
+        let right = tractions.remove("right");
+        if tractions.is_empty() {
+            stage.remove("tractions");
+        }
+        if let Some(across) = right.and_then(|right| right[0].as_f64().zip(right[1].as_f64())) {
+            stage.insert("pressures".to_owned(), json!({"right": across.0 + across.1}));
+        }
+    }
 }

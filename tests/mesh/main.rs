@@ -8,5 +8,6 @@ mod conversion;
 mod decks;
 mod geometry;
 mod mutations;
+mod requests;
 mod samples;
 mod summaries;

@@ -51,7 +51,7 @@ fn with_far_contacts(mut request: JobRequest, number: usize) -> JobRequest {
         center[0] += reach * index as f64;
         let name = format!("far {index}");
         model.obstacles.insert(name.clone(), Obstacle::Ball { center, radius: reach, side: Side::Outside });
-        model.contacts.push(Contact { node: nodes[index % nodes.len()].clone(), obstacle: name, friction: 0.5 });
+        model.contacts.push(Contact::new(nodes[index % nodes.len()].clone(), name, 0.5));
     }
     request
 }

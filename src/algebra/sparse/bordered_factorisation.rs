@@ -214,7 +214,7 @@ fn friction_of(matrix: &Bordered, holdings: &Holdings) -> Friction {
 /// The inertia of `Zᵀ K Z`, with the columns of `Z` spanning the motions that the holdings allow. `None` where it
 /// cannot be determined: `K` is not symmetric, or a holding could not be eliminated.
 pub fn held_inertia(matrix: &Bordered, holdings: &Holdings, tolerance: f64) -> Option<Inertia> {
-    if matrix.is_outside || matrix.symmetrised().lower.len() != matrix.lower.len() {
+    if matrix.is_outside || !matrix.is_symmetric() {
         return None;
     }
     count_factorisation();

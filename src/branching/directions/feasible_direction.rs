@@ -9,6 +9,7 @@ use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_contact_forces::whole_rates;
 use crate::mechanics::problem::state::{Rate, State, dot};
 use crate::mechanics::problem::work_and_dissipation;
+use crate::mechanics::structure::following_loads;
 use crate::step::corrector::cached_factorisation::CachedFactorisation;
 use serde::{Deserialize, Serialize};
 
@@ -88,7 +89,13 @@ pub fn potential_rate(loading: Loading<'_>, state: &State, rate: &Rate, dissipat
     } else {
         0.0
     };
-    driven - dissipation - rate.load * dot(&loading.pattern.forces, &state.displacement)
+    let mut power = dot(&loading.pattern.forces, &state.displacement);
+    if loading.structure.has_following_loads() {
+        // At the present place, as a dead load of the same size.
+        let by_load = following_loads::force_rates(loading.structure, &state.displacement, &loading.pattern.supports);
+        power += dot(&by_load, &state.displacement);
+    }
+    driven - dissipation - rate.load * power
 }
 
 /// The sign of a load rate; 0 where it is stationary.

@@ -10,7 +10,7 @@
 use crate::check::measure::beams::BeamResponse;
 use crate::check::measure::elements::MeasuredResponse;
 use crate::check::measure::errors::{Errors, worse};
-use crate::check::measure::posted::{Posted, PostedLoading};
+use crate::check::measure::posted::Posted;
 use crate::check::measure::solids::SolidResponse;
 use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::result::increment::{BeamEndForces, ElementState, Increment};
@@ -156,9 +156,9 @@ fn off_ends(ends: &[BeamEndForces; 2], response: &BeamResponse, length: f64) -> 
 }
 
 /// Adds to `errors` what is reported of the sum of the loads.
-pub(super) fn judge_loads(
+pub(super) fn judge_loads<'a>(
     increment: &Increment,
-    loading: &PostedLoading,
+    loads: impl Iterator<Item = &'a MeasuredVector> + Clone,
     dimension: usize,
     force: f64,
     errors: &mut Errors,
@@ -166,8 +166,8 @@ pub(super) fn judge_loads(
     if increment.applied_forces.is_empty() {
         return;
     }
-    let sum: MeasuredVector = loading.forces.iter().sum();
-    let sizes: f64 = loading.forces.iter().map(largest).sum();
+    let sum: MeasuredVector = loads.clone().sum();
+    let sizes: f64 = loads.map(largest).sum();
     if increment.applied_forces.len() != dimension {
         errors.reported = f64::MAX;
         return;

@@ -123,6 +123,8 @@ struct Workspace {
     rotations: Vec<MeasuredVector>,
     /// Unbalanced force of each node.
     balance: Vec<MeasuredVector>,
+    /// The forces of pressures that follow surfaces, in the order of their faces.
+    pressed: Vec<(usize, MeasuredVector)>,
     /// Rounding error of the unbalanced force.
     rounding: Vec<f64>,
     /// Unbalanced moment of each node, and its rounding error.
@@ -214,6 +216,7 @@ impl Judge {
                 displacements,
                 rotations,
                 balance,
+                pressed: Vec::new(),
                 rounding,
                 moments: vec![(MeasuredVector::zeros(), 0.0); nodes],
                 frames,
@@ -320,6 +323,15 @@ impl Judge {
             outside.add_moment(moment);
             outside.add(posted, node, &work.displacements[node], load);
         }
+        work.pressed.clear();
+        for (faces, pressure) in posted.pressed.iter().zip(&work.loading.pressures).filter(|(_, size)| **size != 0.0) {
+            work.pressed.extend(faces.iter().flat_map(|face| face.pressed(&work.displacements, *pressure)));
+        }
+        for (node, force) in &work.pressed {
+            work.balance[*node] -= force;
+            most = most.max(largest(force));
+            outside.add(posted, *node, &work.displacements[*node], force);
+        }
         let mut strain = 0.0;
         let mut recorded = increment.elements.iter().peekable();
         for (index, element) in posted.elements.iter().enumerate() {
@@ -385,7 +397,9 @@ impl Judge {
         for (state, response) in increment.elements.iter().zip(&work.responses) {
             global::judge_element(state, response, posted.dimension, (force, self.length), errors);
         }
-        global::judge_loads(increment, &work.loading, posted.dimension, force, errors);
+        let pressed = work.pressed.iter().map(|(_, force)| force);
+        let loads = work.loading.forces.iter().chain(pressed);
+        global::judge_loads(increment, loads, posted.dimension, force, errors);
         if increment.supports.is_empty() && !posted.supports.is_empty() {
             return;
         }

@@ -2,7 +2,7 @@
 
 use crate::check::measure::elements::MeasuredElement;
 use crate::check::measure::obstacles::{MeasuredFrame, MeasuredObstacle};
-use crate::check::measure::solids::SolidShares;
+use crate::check::measure::solids::{MeasuredFace, SolidShares, pressed_surfaces};
 use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::model::request::{JobRequest, Model, PlaneCondition};
 use indexmap::{IndexMap, IndexSet};
@@ -22,6 +22,8 @@ pub(super) struct Posted {
     pub contacts: Vec<PostedContact>,
     /// Number of obstacles that move in some stage.
     pub moving: usize,
+    /// The faces of each surface that some stage presses.
+    pub pressed: Vec<Vec<MeasuredFace>>,
     pub stages: Vec<PostedStage>,
     /// Whether solids are bodies of revolution, whose radial forces balance around the axis and not in the plane.
     pub is_revolved: bool,
@@ -62,6 +64,8 @@ pub(super) struct PostedStage {
     displacements: PostedLoadPattern,
     rotations: PostedLoadPattern,
     motions: PostedLoadPattern,
+    /// Pressure on each pressed surface.
+    pressures: Vec<f64>,
     /// Load factor of a dimensionless load of 1.
     pub load_scale: f64,
 }
@@ -78,6 +82,8 @@ pub(super) struct PostedLoading {
     pub moments: Vec<MeasuredVector>,
     pub rotations: Vec<MeasuredVector>,
     pub shifts: Vec<MeasuredVector>,
+    /// Pressure on each pressed surface.
+    pub pressures: Vec<f64>,
 }
 
 impl Posted {
@@ -102,6 +108,8 @@ impl Posted {
             Some(PostedContact { node, obstacle, motion, friction: contact.friction })
         };
         let shares = SolidShares::new(model);
+        let pressed = pressed_surfaces(model);
+        let pressure = |stage: &crate::model::request::Stage, name: &str| stage.pressures.get(name).copied();
         let scales = load_scales.iter().copied().chain(std::iter::repeat(1.0));
         let stage = |(stage, load_scale): (&crate::model::request::Stage, f64)| PostedStage {
             name: stage.name.clone(),
@@ -119,6 +127,7 @@ impl Posted {
                 stage.displacements.iter().map(|(name, values)| (name, rotation(values, model.dimension))),
             ),
             motions: pattern(&stage.obstacle_motion, &|name| moving.get_index_of(name)),
+            pressures: pressed.iter().map(|(name, _)| pressure(stage, name).unwrap_or(0.0)).collect(),
             load_scale,
         };
         let nodes: Vec<PostedNode> = model.nodes.iter().zip(model.rotating_nodes()).map(node).collect();
@@ -142,6 +151,7 @@ impl Posted {
                 .filter_map(|element| element.solid())
                 .any(|(_, solid)| solid.plane == Some(PlaneCondition::Axisymmetric)),
             stages: model.stages.iter().zip(scales).map(stage).collect(),
+            pressed: pressed.into_iter().map(|(_, faces)| faces).collect(),
         }
     }
 }
@@ -228,6 +238,7 @@ impl PostedLoading {
             moments: vec![MeasuredVector::zeros(); nodes],
             rotations: vec![MeasuredVector::zeros(); nodes],
             shifts: vec![MeasuredVector::zeros(); posted.moving],
+            pressures: vec![0.0; posted.pressed.len()],
         }
     }
 
@@ -250,6 +261,9 @@ impl PostedLoading {
             for (place, values) in pattern {
                 sums[*place] += values * load;
             }
+        }
+        for ((sum, held), pattern) in self.pressures.iter_mut().zip(&held.pressures).zip(&stage.pressures) {
+            *sum = held + pattern * load;
         }
     }
 }

@@ -101,7 +101,7 @@ impl Make {
     }
 
     pub fn contact(mut self, node: &str, obstacle: &str, friction: f64) -> Self {
-        self.0.model.contacts.push(Contact { node: node.to_owned(), obstacle: obstacle.to_owned(), friction });
+        self.0.model.contacts.push(Contact::new(node, obstacle, friction));
         self
     }
 
@@ -113,6 +113,7 @@ impl Make {
             displacements: IndexMap::new(),
             body_forces: IndexMap::new(),
             tractions: IndexMap::new(),
+            pressures: IndexMap::new(),
             obstacle_motion: IndexMap::new(),
             until,
         });

@@ -1,11 +1,13 @@
 //! Reads the model of a command.
 
 use crate::check::scenes;
+use crate::command::options::embedded_mesh;
 use crate::command::output::outcome::Failure;
 use crate::model::{InputErrors, JobRequest, decode};
 use clap::ArgMatches;
 use serde_json::json;
 use std::io::{ErrorKind, Read};
+use std::path::Path;
 
 /// The argument that names a model.
 #[derive(Debug, clap::Args)]
@@ -31,7 +33,9 @@ impl Model {
             return Ok(text);
         }
         match std::fs::read(&self.file) {
-            Ok(text) => Ok(text),
+            Ok(text) => {
+                embedded_mesh::embed(text, Path::new(&self.file)).map_err(|detail| Failure::Input(vec![detail]))
+            }
             Err(error) if error.kind() == ErrorKind::NotFound => match scenes::find(&self.file) {
                 Some(scene) => Ok(scene.request.as_bytes().to_vec()),
                 None => Err(Failure::Input(vec![format!(

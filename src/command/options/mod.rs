@@ -3,6 +3,7 @@
 pub(crate) mod access;
 pub(crate) mod bounds;
 pub(crate) mod duration;
+pub(crate) mod embedded_mesh;
 pub(crate) mod input;
 pub(crate) mod limits;
 pub(crate) mod service;

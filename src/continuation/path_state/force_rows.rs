@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! reaction of the supports  f_int(u) - s p - h - Σ_c B_cᵀ r_c   at supported components, in the notation of `equilibrium`
-//! applied forces            Σ (s p + h)                         over the nodes
+//! applied forces            Σ (s p + h + p_f(u))                over the nodes; p_f: loads that follow the structure
 //! ```
 
 use crate::continuation::path_state::row_conversion::RowSource;
@@ -11,6 +11,7 @@ use crate::mechanics::contact::vector::dot;
 use crate::mechanics::problem::equilibrium::write_unbalanced;
 use crate::mechanics::problem::node_contact_forces;
 use crate::mechanics::structure::elements::Resultants;
+use crate::mechanics::structure::following_loads;
 use crate::result::increment::{BeamEndForces, ElementState, SpaceVector};
 use crate::result::nodal_values::NodalValues;
 use std::sync::Arc;
@@ -109,10 +110,12 @@ pub(crate) fn support_reactions(scene: &Scene, row: &RowSource<'_>) -> NodalValu
 /// The sum of the applied forces over the nodes.
 pub(crate) fn applied_forces(scene: &Scene, row: &RowSource<'_>) -> SpaceVector {
     let (structure, loading) = (row.loading.structure, row.loading);
+    let following = following_loads::forces(structure, &row.state.displacement);
     let mut sum = [0.0; 3];
     for node in 0..structure.numbering.nodes() {
         for (sum, freedom) in sum.iter_mut().zip(structure.translations_of(node)) {
             *sum += row.state.load * loading.pattern.forces[freedom] + loading.held.forces[freedom];
+            *sum += following.get(freedom).copied().unwrap_or(0.0);
         }
     }
     sum[..structure.dimension].iter().map(|value| value * scene.plan().force_scale).collect()

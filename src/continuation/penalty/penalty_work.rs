@@ -14,6 +14,7 @@ use crate::continuation::penalty::penalty_equations::{PenaltyPoint, PenaltySyste
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::{add, dot, size};
 use crate::mechanics::problem::contact_jacobian;
+use crate::mechanics::structure::following_loads;
 use crate::result::increment::Status;
 
 /// `(ΔW, ΔD)` of an increment.
@@ -25,6 +26,10 @@ pub fn work_and_dissipation(system: &PenaltySystem<'_>, from: &PenaltyPoint, to:
         to.state.displacement.iter().zip(&from.state.displacement).map(|(end, start)| end - start).collect();
     for (freedom, change) in change.iter().enumerate() {
         work += (loading.held.forces[freedom] + mean_load * loading.pattern.forces[freedom]) * change;
+    }
+    let following = [from, to].map(|at| following_loads::forces(loading.structure, &at.state.displacement));
+    for (change, (before, after)) in change.iter().zip(following[0].iter().zip(&following[1])) {
+        work += 0.5 * (before + after) * change;
     }
     if loading.pattern.moves_boundary() {
         let (start, end) = (system.evaluate(from, &from.state), system.evaluate(from, &to.state));

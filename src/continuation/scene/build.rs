@@ -2,7 +2,7 @@
 
 use crate::continuation::scene::elements::ElementBuilder;
 use crate::continuation::scene::requested_contacts::Reported;
-use crate::continuation::scene::solid_loads::LoadedSolids;
+use crate::continuation::scene::solid_loads::{LoadedSolids, add_pressure_faces, pressed_surfaces};
 use crate::continuation::scene::stage_load::StageLoad;
 use crate::continuation::scene::tolerances::COINCIDENCE_TOLERANCE;
 use crate::mechanics::contact::coulomb::CoulombFriction;
@@ -14,6 +14,7 @@ use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::node_contact_forces::Corner;
 use crate::mechanics::structure::Structure;
+use crate::mechanics::structure::elements::solid::pressure_face::PRESSURE_UNIT;
 use crate::model::input::limits::PENETRATION_TOLERANCE;
 use crate::model::request::{self, Analysis, Model, Side};
 use crate::resources::budget;
@@ -42,9 +43,13 @@ pub(super) fn build_structure(
             .map(|component: &request::Component| (numbers[name.as_str()], component.place(dimension)))
             .collect()
     };
-    let supports: Vec<(usize, usize)> = model.supports.iter().flat_map(of_node).collect();
-    let elements = ElementBuilder::new(model, numbers, length, force).build();
-    Structure::like(like, dimension, model.nodes.len(), &supports, elements)
+    let mut supports: Vec<(usize, usize)> = model.supports.iter().flat_map(of_node).collect();
+    let mut elements = ElementBuilder::new(model, numbers, length, force).build();
+    let pressed = pressed_surfaces(model);
+    add_pressure_faces(model, &pressed, length, &mut elements);
+    let nodes = model.nodes.len() + pressed.len();
+    supports.extend((model.nodes.len()..nodes).flat_map(|auxiliary| (0..dimension).map(move |k| (auxiliary, k))));
+    Structure::like(like, dimension, nodes, &supports, elements)
 }
 
 /// The contacts that are solved for, and the contacts of the request.
@@ -300,13 +305,18 @@ pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scal
         let rotation = structure.numbering.rotations_of(numbers[name.as_str()]).start;
         forces[rotation] = moment * load_scale / force / length;
     }
-    let supports_move =
-        model.stages.iter().any(|stage| stage.displacements.values().flatten().any(|value| *value != 0.0));
+    let moves = |stage: &request::Stage| stage.displacements.values().flatten().any(|value| *value != 0.0);
+    let supports_move = model.stages.iter().any(|stage| moves(stage) || !stage.pressures.is_empty());
     let mut supports = vec![0.0; if supports_move { structure.freedoms() } else { 0 }];
     if supports_move {
         for (node, values) in &displacements {
             let freedoms = structure.freedoms_of(*node);
             freedoms.zip(values).for_each(|(freedom, value)| supports[freedom] = value * load_scale / length);
+        }
+        for (place, name) in pressed_surfaces(model).into_iter().enumerate() {
+            let pressure = stage.pressures.get(name).copied().unwrap_or(0.0) * load_scale;
+            let freedom = structure.freedoms_of(model.nodes.len() + place).start;
+            supports[freedom] = pressure / force * length * length / PRESSURE_UNIT;
         }
     }
     let shift = |contact: &request::Contact| {

@@ -77,6 +77,15 @@ pub(crate) struct AdditionalParts {
     pub contacts: Vec<(&'static str, &'static str, ContactPair)>,
 }
 
+/// Adds what contacts of several nodes couple to the layout of the tangent.
+fn couple(structure: &mut Structure, contacts: &[ContactPair]) {
+    let coupled = contacts.iter().filter(|contact| contact.kinematics.node().is_none());
+    let couplings: Vec<Vec<usize>> = coupled.map(|contact| contact.kinematics.nodes().to_vec()).collect();
+    if !couplings.is_empty() {
+        structure.couple(couplings);
+    }
+}
+
 /// Zero displacements of all nodes, with the rotations of those that have one.
 fn still(model: &Model) -> NodalValues {
     let components = |rotates: bool| vec![0.0; model.dimension + if rotates { model.rotations() } else { 0 }];
@@ -155,11 +164,7 @@ impl Scene {
             });
             contacts.push(contact);
         }
-        let coupled = contacts.iter().filter(|contact| contact.kinematics.node().is_none());
-        let couplings: Vec<Vec<usize>> = coupled.map(|contact| contact.kinematics.nodes().to_vec()).collect();
-        if !couplings.is_empty() {
-            structure.couple(couplings);
-        }
+        couple(&mut structure, &contacts);
         let scaled = ScaledModel {
             model,
             analysis: &request.analysis,

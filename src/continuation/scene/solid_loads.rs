@@ -4,11 +4,14 @@
 //! f_a = V_a b,   V_a = ∫ N_a dV over the solids of a material;      f_a = A_a t,   A_a = ∫ N_a dA over a surface
 //! ```
 //!
-//! The volumes and areas of the nodes are computed once for all stages.
+//! The volumes and areas of the nodes are computed once for all stages. A pressure that follows its surface is an element
+//! of the structure (`pressure_face`); its stages prescribe the degree of freedom that stands for it.
 
 use crate::continuation::scene::build::norm;
 use crate::continuation::scene::elements::ElementBuilder;
+use crate::mechanics::structure::element_list::ElementList;
 use crate::mechanics::structure::elements::solid::any::each_traction_force;
+use crate::mechanics::structure::elements::solid::pressure_face::push_pressure_face;
 use crate::model::request::{Element, Model, Stage};
 use crate::model::solids::data;
 use crate::model::solids::faces::{FaceMatch, SolidFace, surface_faces};
@@ -32,7 +35,8 @@ impl<'a> LoadedSolids<'a> {
         let mut loaded = Self::default();
         for stage in &model.stages {
             loaded.volumes.extend(stage.body_forces.keys().map(|name| (name.as_str(), NodalShares::new())));
-            loaded.areas.extend(stage.tractions.keys().map(|name| (name.as_str(), NodalShares::new())));
+            let surfaces = stage.tractions.keys().chain(stage.pressures.keys());
+            loaded.areas.extend(surfaces.map(|name| (name.as_str(), NodalShares::new())));
         }
         if !loaded.volumes.is_empty() {
             let builder = ElementBuilder::new(model, numbers, 1.0, 1.0);
@@ -79,7 +83,38 @@ impl<'a> LoadedSolids<'a> {
     /// The largest resultant of a load of a stage, in the user's units; it depends neither on the mesh nor on the axes.
     pub fn largest_resultant(&self, stage: &Stage) -> f64 {
         let resultant = |(shares, density): (&NodalShares, [f64; 3])| norm(&density) * shares.values().sum::<f64>();
-        self.loads(stage).map(resultant).fold(0.0, f64::max)
+        let pressed = |(name, pressure): (&String, &f64)| {
+            let shares = self.areas.get(name.as_str()).into_iter().flat_map(NodalShares::values);
+            pressure.abs() * shares.sum::<f64>()
+        };
+        let dead = self.loads(stage).map(resultant).fold(0.0, f64::max);
+        stage.pressures.iter().map(pressed).fold(dead, f64::max)
+    }
+}
+
+/// The surfaces that some stage presses, in the order of the model's surfaces. The auxiliary node of the first has the
+/// number after the last node of the model, and so on.
+pub(super) fn pressed_surfaces(model: &Model) -> Vec<&str> {
+    let is_pressed = |name: &&String| model.stages.iter().any(|stage| stage.pressures.contains_key(name.as_str()));
+    model.surfaces.keys().filter(is_pressed).map(String::as_str).collect()
+}
+
+/// Adds the faces of the pressed surfaces to the elements.
+pub(super) fn add_pressure_faces(model: &Model, pressed: &[&str], length: f64, elements: &mut ElementList) {
+    if pressed.is_empty() {
+        return;
+    }
+    for (name, faces) in model.surfaces.keys().zip(surface_faces(model)) {
+        let Some(place) = pressed.iter().position(|own| own == name) else { continue };
+        for face in faces {
+            let FaceMatch::Face(face) = face else { continue };
+            let Some((_, solid)) = model.elements.get(face.element).and_then(Element::solid) else { continue };
+            let idealisation = data::idealisation(solid, model.dimension, length);
+            let places: Vec<&[f64]> = face.nodes.iter().map(|node| model.nodes[*node].as_slice()).collect();
+            let positions = data::positions(&places, idealisation, length);
+            let auxiliary = model.nodes.len() + place;
+            push_pressure_face(elements, (face.kind, idealisation), &face.nodes, &positions, auxiliary);
+        }
     }
 }
 

@@ -66,7 +66,8 @@ pub(super) fn solid_scales(
             Some((load * built.load_scale, load))
         })
         .collect();
-    let is_linear = structure.is_linear();
+    // A pressure that follows its surface is no less a load in small strains.
+    let is_linear = structure.resists_linearly();
     let displaced = |(stage, response): (_, &Option<(f64, f64)>)| {
         response.map(|(load_factor, _)| expected_load_factor(stage) / load_factor)
     };

@@ -107,6 +107,7 @@ pub(crate) fn assemble_sparse(system: &ModeSystem<'_>, iterate: &Iterate, kind: 
             }
         }
     });
+    matrix.let_differ(&layout.unsymmetric);
     add_loads_and_contacts(system, iterate, kind, &mut matrix);
     Some(matrix)
 }

@@ -14,7 +14,8 @@ use serde::{Deserialize, Serialize};
 pub struct LoadPattern {
     /// Forces over all degrees of freedom.
     pub forces: Vec<f64>,
-    /// Displacements of supports over all degrees of freedom; empty where no support moves in any stage.
+    /// Displacements of supports over all degrees of freedom, and pressures at those that stand for them; empty where no
+    /// support moves in any stage and nothing is under pressure.
     pub supports: Vec<f64>,
     /// Translation of each contact's obstacle.
     pub shifts: Vec<Vector>,

@@ -1,11 +1,11 @@
 //! External work and dissipation along an increment.
 //!
 //! ```text
-//! ΔW = f_held·Δu + ∫ s d(f·u) + ∫ Q ds,      ΔD = -Σ ∫ r_t·dx
+//! ΔW = f_held·Δu + ∫ s d(f·u) + ∫ Q ds + ∫ p_f(u)·du,      ΔD = -Σ ∫ r_t·dx
 //! ```
 //!
 //! `Q` is the force of the supports and obstacles that move with the load factor, work-conjugate to the load factor;
-//! `x` is the position of a node relative to its obstacle.
+//! `x` is the position of a node relative to its obstacle; `p_f` are loads that follow the structure.
 //!
 //! Both integrands are products along a curve whose ends and end directions are known: cubic Hermite interpolants of
 //! both factors, integrated exactly, give an error of fourth order in the step. The interpolants' parameter is arc
@@ -18,6 +18,7 @@ use crate::mechanics::problem::equilibrium;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_contact_forces::reaction_in_space;
 use crate::mechanics::problem::state::{Rate, State, dot};
+use crate::mechanics::structure::following_loads;
 
 /// A scalar at both ends of an increment with its derivatives by arc length.
 #[derive(Clone, Copy)]
@@ -59,6 +60,9 @@ pub fn work_and_dissipation(
         let driven = Ends { first: 0.0, last: load.last - load.first, ..load };
         work += integral(Ends { first, first_rate, last, last_rate }, driven, length);
     }
+    if loading.structure.has_following_loads() {
+        work += work_of_following_loads(loading, start, end, length);
+    }
     let mut dissipation = 0.0;
     for (index, (mode, contact)) in modes.iter().zip(loading.contacts).enumerate() {
         if !matches!(mode, Mode::Slip { .. }) || contact.tangents() == 0 {
@@ -78,6 +82,27 @@ pub fn work_and_dissipation(
         }
     }
     (work, dissipation)
+}
+
+fn work_of_following_loads(loading: Loading<'_>, start: Placed<'_>, end: Placed<'_>, length: f64) -> f64 {
+    let structure = loading.structure;
+    let forces = [start, end].map(|(state, _)| following_loads::forces(structure, &state.displacement));
+    let rates = [start, end]
+        .map(|(state, rate)| following_loads::force_rates(structure, &state.displacement, &rate.displacement));
+    let mut work = 0.0;
+    for (freedom, ((first, last), (first_rate, last_rate))) in
+        forces[0].iter().zip(&forces[1]).zip(rates[0].iter().zip(&rates[1])).enumerate()
+    {
+        let force = Ends { first: *first, first_rate: *first_rate, last: *last, last_rate: *last_rate };
+        let path = Ends {
+            first: 0.0,
+            first_rate: start.1.displacement[freedom],
+            last: end.0.displacement[freedom] - start.0.displacement[freedom],
+            last_rate: end.1.displacement[freedom],
+        };
+        work += integral(force, path, length);
+    }
+    work
 }
 
 /// The force `Q` and its derivative by arc length.

@@ -11,6 +11,7 @@
 pub mod assembly;
 pub mod element_list;
 pub mod elements;
+pub mod following_loads;
 pub mod mixed_iteration;
 pub mod numbering;
 mod resistance;
@@ -19,7 +20,7 @@ pub mod turning_nodes;
 
 use assembly::{ElementAt, ElementBlock, ForceBuffer, StiffnessBuffer};
 use element_list::ElementList;
-use elements::{Resultants, Stretching};
+use elements::{FiniteElement, Resultants, Stretching};
 use nalgebra::DMatrix;
 use numbering::Numbering;
 use smallvec::SmallVec;
@@ -61,6 +62,8 @@ pub struct Structure {
     pub turning: TurningNodes,
     /// Whether an element has forces that are variables of the iteration.
     independent_forces: bool,
+    /// Whether loads follow the structure: see [`following_loads`].
+    following_loads: bool,
     /// The largest force that a displacement of one may cause.
     largest_stiffness: f64,
 }
@@ -110,6 +113,7 @@ impl Structure {
             layout: None,
             turning: TurningNodes::default(),
             independent_forces: elements.iter().any(|element| element.independent_forces() > 0),
+            following_loads: elements.iter().any(FiniteElement::is_load),
             largest_stiffness: 0.0,
         };
         structure.turning = TurningNodes::of(&structure.numbering, &structure.unknown_of);
@@ -236,9 +240,19 @@ impl Structure {
         self.independent_forces
     }
 
+    /// Whether some elements stand for loads: see [`following_loads`].
+    pub fn has_following_loads(&self) -> bool {
+        self.following_loads
+    }
+
     /// Whether the forces of all elements are linear in the displacements.
     pub fn is_linear(&self) -> bool {
         self.elements.iter().all(|element| element.is_linear())
+    }
+
+    /// Whether the forces of all elements that resist are linear in the displacements; loads may follow the structure.
+    pub fn resists_linearly(&self) -> bool {
+        self.elements.iter().all(|element| element.is_load() || element.is_linear())
     }
 
     /// Makes matrices sparse or dense; they stay dense where memory does not suffice to find the layout.

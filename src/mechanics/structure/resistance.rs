@@ -71,7 +71,7 @@ pub fn resistance(structure: &Structure, displacement: &[f64], rate: &[f64]) -> 
     }
     let mut buffers = (StiffnessBuffer::default(), ForceBuffer::default());
     let (mut largest, mut turning) = (0.0_f64, Vec::new());
-    for at in structure.elements() {
+    for at in structure.elements().filter(|at| !at.element.is_load()) {
         let moved = moved(at, displacement, rate, &mut buffers);
         let resistance = moved.resistance(size);
         if at.element.is_linear() || resistance <= UNCHANGED {

@@ -14,6 +14,9 @@ pub struct Layout {
     /// For each call that `Structure::each_stiffness` makes, in its order, the position of the entry; `None` where its
     /// row or column is supported.
     places: Vec<Option<u32>>,
+    /// Entries below the diagonal, of rows and columns over unknowns, that may differ from those above: those of loads that
+    /// follow the structure.
+    pub unsymmetric: Vec<(usize, usize)>,
     _held: Taken,
 }
 
@@ -48,7 +51,14 @@ impl Layout {
             };
             places.push(place);
         });
-        Some(Self { pattern: Arc::new(pattern), places, _held: held })
+        let loads = structure.elements().filter(|at| at.element.is_load());
+        let below = loads.flat_map(|at| {
+            let unknowns = at.freedoms.iter().filter_map(|freedom| unknown_of[*freedom]);
+            let pairs = unknowns.clone().cartesian_product(unknowns);
+            pairs.filter(|(row, column)| row > column).collect::<Vec<_>>()
+        });
+        let unsymmetric = below.sorted_unstable().dedup().collect();
+        Some(Self { pattern: Arc::new(pattern), places, unsymmetric, _held: held })
     }
 
     /// The positions of the entries of the calls, in their order.

@@ -70,7 +70,7 @@ pub(super) fn loads(scope: &Scope, around: &Surroundings, stage: &Stage, at: &Do
             stage.moments.is_empty() && stage.displacements.is_empty() && stage.obstacle_motion.is_empty();
         let at = if only_forces && !stage.forces.is_empty() { &forces_at } else { at };
         mistakes.add(at, || {
-            "the stage has no load; a force, a body force or a traction that is not zero on a free component, a moment on a rotation that is free, a \
+            "the stage has no load; a force, a body force, a traction or a pressure that is not zero on a free component, a moment on a rotation that is free, a \
              displacement of a support that an element joins to a free component, or a motion of an obstacle against a \
              contact is expected"
         });

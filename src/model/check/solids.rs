@@ -8,7 +8,7 @@ use crate::model::check::scope::{Scope, proper_name};
 use crate::model::check::structure::distinct_nodes;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{quoted, suggestion};
-use crate::model::request::{ElasticConstants, Element, Material, PlaneCondition, Solid, Stage};
+use crate::model::request::{ElasticConstants, Element, Material, PlaneCondition, Solid, Stage, Surface};
 use crate::model::solids::data;
 use crate::model::solids::faces::{FaceMatch, surface_faces};
 
@@ -178,7 +178,7 @@ pub(super) fn surfaces(scope: &Scope, mistakes: &mut Mistakes) {
     }
 }
 
-/// Checks the body forces and the tractions of a stage; returns whether they load a free component.
+/// Checks the body forces, tractions and pressures of a stage; returns whether they load a free component.
 pub(super) fn loads(scope: &Scope, stage: &Stage, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
     let dimension = scope.model.dimension;
     let moves = |nodes: &[String], force: &[f64]| {
@@ -206,15 +206,34 @@ pub(super) fn loads(scope: &Scope, stage: &Stage, at: &DocumentPlace, mistakes: 
     let at_tractions = at.member("tractions");
     for (name, traction) in &stage.tractions {
         let at = at_tractions.member(name);
-        let surface = scope.model.surfaces.get(name);
-        if surface.is_none() {
-            mistakes.add(&at, || {
-                let known = suggestion(name, scope.model.surfaces.keys().map(String::as_str));
-                format!("there is no surface {}{known}", quoted(name))
-            });
-        }
+        let surface = known_surface(scope, name, &at, mistakes);
         let sane = numbers::vector(traction, dimension, &at, mistakes);
         loaded |= sane && surface.is_some_and(|surface| surface.faces.iter().any(|face| moves(face, traction)));
     }
+    let at_pressures = at.member("pressures");
+    for (name, pressure) in &stage.pressures {
+        let at = at_pressures.member(name);
+        let surface = known_surface(scope, name, &at, mistakes);
+        let sane = numbers::number(*pressure, &at, mistakes);
+        // The surface may turn: it presses along every axis.
+        let pressed = vec![*pressure; dimension];
+        loaded |= sane && surface.is_some_and(|surface| surface.faces.iter().any(|face| moves(face, &pressed)));
+    }
     loaded
+}
+
+fn known_surface<'a>(
+    scope: &Scope<'a>,
+    name: &str,
+    at: &DocumentPlace,
+    mistakes: &mut Mistakes,
+) -> Option<&'a Surface> {
+    let surface = scope.model.surfaces.get(name);
+    if surface.is_none() {
+        mistakes.add(at, || {
+            let known = suggestion(name, scope.model.surfaces.keys().map(String::as_str));
+            format!("there is no surface {}{known}", quoted(name))
+        });
+    }
+    surface
 }

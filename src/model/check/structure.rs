@@ -110,6 +110,7 @@ pub(super) fn elements(scope: &Scope, mistakes: &mut Mistakes) {
                 distinct_nodes(scope, nodes, 2, &at, mistakes);
                 numbers::positive(*stiffness, &at.member("stiffness"), mistakes);
             }
+            Element::Solid(_) => mistakes.add(&at, || "a group of a mesh is expanded first: see `expand_sets`"),
             _ => {
                 if let Some((kind, solid)) = element.solid() {
                     solids::solid(scope, kind, solid, &at, mistakes);

@@ -5,6 +5,7 @@
 
 mod analysis;
 mod follow;
+mod meshes;
 mod model;
 mod reader;
 mod sets;
@@ -16,9 +17,8 @@ mod tests;
 
 use crate::model::input::json::Json;
 use crate::model::input::mistakes::Mistakes;
-use crate::model::{FollowRequest, InputError, InputErrors, JobRequest, StudyRequest};
+use crate::model::{Analysis, FollowRequest, InputError, InputErrors, JobRequest, Model, StudyRequest};
 use reader::{Fields, Input, Object};
-pub use sets::expand_sets;
 
 const JOB_REQUEST: Fields = Fields { what: "a job request", known: &["model", "analysis"], later: &[] };
 const SWEEP_REQUEST: Fields = Fields { what: "a sweep", known: &["model", "analysis", "sweep"], later: &[] };
@@ -100,8 +100,37 @@ fn job_request(input: &Input, mistakes: &mut Mistakes) -> Option<JobRequest> {
     let model = object.required("model", mistakes, model::model);
     let analysis = object.with_default("analysis", Default::default(), mistakes, analysis::analysis);
     let (mut model, mut analysis) = (model?, analysis?);
-    sets::expand(&mut model, &mut analysis, mistakes);
+    expand(&mut model, &mut analysis, mistakes);
     Some(JobRequest { model, analysis })
+}
+
+/// The request with the parts of its mesh, and with the nodes of sets and surfaces in place of their names, `@name`: in
+/// supports, loads, contacts and in what is recorded. Requests read from JSON are expanded already.
+///
+/// # Errors
+///
+/// Mistakes in the mesh, every name that is unknown, every set without nodes, and every node that is given two values.
+///
+/// ```
+/// use arcslip::{Component, JobRequest, Model, NamedSet, Stage};
+///
+/// let mut model = Model::new(2).node("a", [0.0, 0.0]).node("b", [1.0, 0.0]);
+/// model.sets.insert("foot".into(), NamedSet { nodes: vec!["a".into(), "b".into()], elements: vec![] });
+/// let request = JobRequest::from(model.support("@foot", [Component::Y]));
+/// assert_eq!(arcslip::expand_sets(request)?.model.supports.len(), 2);
+/// # Ok::<(), arcslip::InputErrors>(())
+/// ```
+pub fn expand_sets(mut request: JobRequest) -> Result<JobRequest, InputErrors> {
+    let mut mistakes = Mistakes::default();
+    expand(&mut request.model, &mut request.analysis, &mut mistakes);
+    mistakes.into_result().map(|()| request)
+}
+
+/// Puts the parts of a mesh, then the nodes of sets and surfaces, in place of their names.
+fn expand(model: &mut Model, analysis: &mut Analysis, mistakes: &mut Mistakes) {
+    if meshes::expand(model, mistakes) {
+        sets::expand(model, analysis, mistakes);
+    }
 }
 
 fn study_request(input: &Input, mistakes: &mut Mistakes) -> Option<StudyRequest> {
@@ -110,6 +139,6 @@ fn study_request(input: &Input, mistakes: &mut Mistakes) -> Option<StudyRequest>
     let analysis = object.with_default("analysis", Default::default(), mistakes, analysis::analysis);
     let study = object.with_default("study", Default::default(), mistakes, study::study);
     let (mut model, mut analysis) = (model?, analysis?);
-    sets::expand(&mut model, &mut analysis, mistakes);
+    expand(&mut model, &mut analysis, mistakes);
     Some(StudyRequest { model, analysis, study: study? })
 }

@@ -4,7 +4,7 @@ use indexmap::IndexMap;
 
 use crate::mechanics::structure::elements::solid::shapes::kind::SolidKind;
 use crate::model::decode::reader::{Choices, Fields, Input, count, number, numbers, text};
-use crate::model::decode::solids;
+use crate::model::decode::{meshes, solids};
 use crate::model::input::mistakes::Mistakes;
 use crate::model::request::{
     BendingStiffness, Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Strain, Units,
@@ -17,6 +17,7 @@ const MODEL: Fields = Fields {
         "name",
         "units",
         "dimension",
+        "mesh",
         "nodes",
         "supports",
         "materials",
@@ -65,17 +66,24 @@ const BALL: Fields = Fields { what: "a ball", known: &["kind", "center", "radius
 
 const CONTACT: Fields = Fields {
     what: "a contact",
-    known: &["node", "obstacle", "friction"],
-    later: &[
-        ("surface", "`\"node\": \"@name\"` has the nodes of a surface touch"),
-        ("against", "rigid obstacles can be touched, other bodies not yet"),
-    ],
+    known: &["node", "surface", "obstacle", "friction"],
+    later: &[("against", "rigid obstacles can be touched, other bodies not yet")],
 };
 
 const STAGE: Fields = Fields {
     what: "a stage",
-    known: &["name", "forces", "moments", "displacements", "body_forces", "tractions", "obstacle_motion", "until"],
-    later: &[("pressures", "`tractions`, which keep their direction, would do for small rotations")],
+    known: &[
+        "name",
+        "forces",
+        "moments",
+        "displacements",
+        "body_forces",
+        "tractions",
+        "pressures",
+        "obstacle_motion",
+        "until",
+    ],
+    later: &[],
 };
 
 const UNTIL: Fields = Fields {
@@ -94,6 +102,7 @@ enum ElementKind {
     Beam,
     RotationalSpring,
     Solid(SolidKind),
+    Group,
 }
 
 const ELEMENT_KIND: Choices<ElementKind> = Choices {
@@ -111,6 +120,7 @@ const ELEMENT_KIND: Choices<ElementKind> = Choices {
         ("tetrahedron10", ElementKind::Solid(SolidKind::Tetrahedron10)),
         ("hexahedron8", ElementKind::Solid(SolidKind::Hexahedron8)),
         ("hexahedron20", ElementKind::Solid(SolidKind::Hexahedron20)),
+        ("solid", ElementKind::Group),
     ],
     later: &[],
 };
@@ -158,7 +168,12 @@ pub(super) fn model(input: &Input, mistakes: &mut Mistakes) -> Option<Model> {
     let name = object.optional("name", mistakes, text);
     let units = object.optional("units", mistakes, units);
     let dimension = object.required("dimension", mistakes, count);
-    let nodes = object.required("nodes", mistakes, vectors);
+    let mesh = object.optional("mesh", mistakes, meshes::mesh);
+    let nodes = if input.has("mesh") {
+        object.with_default("nodes", IndexMap::new(), mistakes, vectors)
+    } else {
+        object.required("nodes", mistakes, vectors)
+    };
     let supports = object
         .with_default("supports", Default::default(), mistakes, |input, mistakes| input.map(mistakes, components));
     let materials = object.with_default("materials", Default::default(), mistakes, |input, mistakes| {
@@ -179,6 +194,7 @@ pub(super) fn model(input: &Input, mistakes: &mut Mistakes) -> Option<Model> {
         units: units?,
         // A dimension too large for the machine's words is refused with all others that are not 2 or 3.
         dimension: usize::try_from(dimension?).unwrap_or(usize::MAX),
+        mesh: mesh?,
         nodes: nodes?,
         supports: supports?,
         materials: materials?,
@@ -226,6 +242,7 @@ fn element(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
         ElementKind::Beam => beam(input, mistakes),
         ElementKind::RotationalSpring => rotational_spring(input, mistakes),
         ElementKind::Solid(kind) => solids::solid(kind, input, mistakes),
+        ElementKind::Group => meshes::group(input, mistakes),
     }
 }
 
@@ -322,10 +339,15 @@ fn ball(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {
 
 fn contact(input: &Input, mistakes: &mut Mistakes) -> Option<Contact> {
     let object = input.object(&CONTACT, mistakes)?;
-    let node = object.required("node", mistakes, text);
+    let surface = object.optional("surface", mistakes, text);
+    let node = match (input.has("surface"), input.has("node")) {
+        (true, true) => input.note("`node` and `surface` are given; one of the two is expected", mistakes),
+        (true, false) => Some(String::new()),
+        (false, _) => object.required("node", mistakes, text),
+    };
     let obstacle = object.required("obstacle", mistakes, text);
     let friction = object.with_default("friction", 0.0, mistakes, number);
-    Some(Contact { node: node?, obstacle: obstacle?, friction: friction? })
+    Some(Contact { node: node?, surface: surface?, obstacle: obstacle?, friction: friction? })
 }
 
 fn stage(input: &Input, mistakes: &mut Mistakes) -> Option<Stage> {
@@ -337,6 +359,8 @@ fn stage(input: &Input, mistakes: &mut Mistakes) -> Option<Stage> {
     let displacements = object.with_default("displacements", Default::default(), mistakes, vectors);
     let body_forces = object.with_default("body_forces", Default::default(), mistakes, vectors);
     let tractions = object.with_default("tractions", Default::default(), mistakes, vectors);
+    let pressures =
+        object.with_default("pressures", Default::default(), mistakes, |input, mistakes| input.map(mistakes, number));
     let obstacle_motion = object.with_default("obstacle_motion", Default::default(), mistakes, vectors);
     let until = object.optional("until", mistakes, until);
     Some(Stage {
@@ -346,6 +370,7 @@ fn stage(input: &Input, mistakes: &mut Mistakes) -> Option<Stage> {
         displacements: displacements?,
         body_forces: body_forces?,
         tractions: tractions?,
+        pressures: pressures?,
         obstacle_motion: obstacle_motion?,
         until: until?,
     })

@@ -8,33 +8,10 @@ use crate::model::input::names::{quoted, suggestion};
 use crate::model::request::{
     Analysis, Contact, Element, Model, NamedSet, Record, RecordedContacts, RecordedSupports, Surface,
 };
-use crate::model::{InputErrors, JobRequest};
 use indexmap::{IndexMap, IndexSet};
 use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::HashMap;
 use std::rc::Rc;
-
-/// The request with the nodes of sets and surfaces in place of their names, `@name`: in supports, loads, contacts and in what
-/// is recorded. Requests read from JSON are expanded already.
-///
-/// # Errors
-///
-/// Every name that is unknown, every set without nodes, and every node that is given two values.
-///
-/// ```
-/// use arcslip::{Component, JobRequest, Model, NamedSet, Stage};
-///
-/// let mut model = Model::new(2).node("a", [0.0, 0.0]).node("b", [1.0, 0.0]);
-/// model.sets.insert("foot".into(), NamedSet { nodes: vec!["a".into(), "b".into()], elements: vec![] });
-/// let request = JobRequest::from(model.support("@foot", [Component::Y]));
-/// assert_eq!(arcslip::expand_sets(request)?.model.supports.len(), 2);
-/// # Ok::<(), arcslip::InputErrors>(())
-/// ```
-pub fn expand_sets(mut request: JobRequest) -> Result<JobRequest, InputErrors> {
-    let mut mistakes = Mistakes::default();
-    expand(&mut request.model, &mut request.analysis, &mut mistakes);
-    mistakes.into_result().map(|()| request)
-}
 
 /// Puts nodes in place of names of sets and surfaces.
 pub(super) fn expand(model: &mut Model, analysis: &mut Analysis, mistakes: &mut Mistakes) {
@@ -126,6 +103,9 @@ fn uses_sets(model: &Model, analysis: &Analysis) -> bool {
         record.nodes.iter().flatten().chain(supports).chain(contacts)
     });
     let of_contacts = model.contacts.iter().map(|contact| &contact.node);
+    if model.contacts.iter().any(|contact| contact.surface.is_some()) {
+        return true;
+    }
     model.supports.keys().chain(of_contacts).chain(of_stages).chain(recorded).any(|name| is_group(name))
 }
 
@@ -175,7 +155,7 @@ impl<'a> Groups<'a> {
                 let found = elements.iter().filter_map(|name| places.get(name.as_str()));
                 found.flat_map(|place| self.elements[*place].nodes()).collect()
             }
-            (None, Some(Surface { faces })) => faces.iter().flatten().collect(),
+            (None, Some(Surface { faces, .. })) => faces.iter().flatten().collect(),
             (None, None) => return None,
         };
         // Beyond the limit no name stands for anything more, and nothing more is kept.
@@ -263,9 +243,13 @@ impl<'a> Groups<'a> {
 
     fn contacts(&self, given: Vec<Contact>, at: &DocumentPlace, mistakes: &mut Mistakes) -> Vec<Contact> {
         let mut all = Vec::with_capacity(given.len());
-        for (index, contact) in given.into_iter().enumerate() {
+        for (index, mut contact) in given.into_iter().enumerate() {
             let place = at.index(index);
-            match self.members(&contact.node, &place.member("node"), mistakes) {
+            let member = if contact.surface.is_some() { "surface" } else { "node" };
+            if let Some(surface) = contact.surface.take() {
+                contact.node = format!("@{surface}");
+            }
+            match self.members(&contact.node, &place.member(member), mistakes) {
                 Members::Own => all.push(contact),
                 Members::Nodes(nodes) => {
                     if all.len() + nodes.len() > MAX_CONTACTS {

@@ -20,11 +20,11 @@ const MOONEY_RIVLIN: Fields = Fields {
     later: &[],
 };
 
-const SURFACE: Fields = Fields { what: "a surface", known: &["faces"], later: &[] };
+const SURFACE: Fields = Fields { what: "a surface", known: &["faces", "group"], later: &[] };
 
 const SET: Fields = Fields { what: "a set", known: &["nodes", "elements"], later: &[] };
 
-const PLANE_CONDITION: Choices<PlaneCondition> = Choices {
+pub(super) const PLANE_CONDITION: Choices<PlaneCondition> = Choices {
     what: "a condition in the third direction",
     known: &[
         ("strain", PlaneCondition::Strain),
@@ -34,7 +34,7 @@ const PLANE_CONDITION: Choices<PlaneCondition> = Choices {
     later: &[],
 };
 
-const LOCKING: Choices<LockingMend> = Choices {
+pub(super) const LOCKING: Choices<LockingMend> = Choices {
     what: "a mend against locking",
     known: &[
         ("none", LockingMend::None),
@@ -112,8 +112,16 @@ fn density(object: &Object, mistakes: &mut Mistakes) -> Option<Option<f64>> {
 
 pub(super) fn surface(input: &Input, mistakes: &mut Mistakes) -> Option<Surface> {
     let object = input.object(&SURFACE, mistakes)?;
+    if input.has("group") {
+        let group = object.required("group", mistakes, text)?;
+        return if input.has("faces") {
+            input.note("`faces` and `group` are given; one of the two is expected", mistakes)
+        } else {
+            Some(Surface { faces: Vec::new(), group: Some(group) })
+        };
+    }
     let faces = object.required("faces", mistakes, |input, mistakes| input.list(mistakes, strings))?;
-    Some(Surface { faces })
+    Some(Surface { faces, group: None })
 }
 
 pub(super) fn set(input: &Input, mistakes: &mut Mistakes) -> Option<NamedSet> {

@@ -100,7 +100,7 @@ fn material() -> impl Strategy<Value = Material> {
 }
 
 fn surface() -> impl Strategy<Value = Surface> {
-    vec(vec(name(), 0..4), 0..3).prop_map(|faces| Surface { faces })
+    vec(vec(name(), 0..4), 0..3).prop_map(|faces| Surface { faces, group: None })
 }
 
 fn set() -> impl Strategy<Value = NamedSet> {
@@ -115,7 +115,12 @@ fn obstacle() -> impl Strategy<Value = Obstacle> {
 }
 
 fn contact() -> impl Strategy<Value = Contact> {
-    (name(), name(), number()).prop_map(|(node, obstacle, friction)| Contact { node, obstacle, friction })
+    (name(), name(), number()).prop_map(|(node, obstacle, friction)| Contact {
+        node,
+        surface: None,
+        obstacle,
+        friction,
+    })
 }
 
 fn until() -> impl Strategy<Value = Until> {
@@ -134,15 +139,16 @@ fn until() -> impl Strategy<Value = Until> {
 }
 
 fn stage() -> impl Strategy<Value = Stage> {
-    let on_solids = (map(numbers()), map(numbers()));
+    let on_solids = (map(numbers()), map(numbers()), map(number()));
     (name(), map(numbers()), map(number()), map(numbers()), on_solids, map(numbers()), of(until())).prop_map(
-        |(name, forces, moments, displacements, (body_forces, tractions), obstacle_motion, until)| Stage {
+        |(name, forces, moments, displacements, (body_forces, tractions, pressures), obstacle_motion, until)| Stage {
             name,
             forces,
             moments,
             displacements,
             body_forces,
             tractions,
+            pressures,
             obstacle_motion,
             until,
         },
@@ -161,6 +167,7 @@ fn model() -> impl Strategy<Value = Model> {
             name,
             units,
             dimension,
+            mesh: None,
             nodes,
             supports,
             materials,

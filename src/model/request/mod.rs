@@ -26,8 +26,8 @@ pub use record::{
     RecordedSupports,
 };
 pub use structure::{
-    BendingStiffness, Component, Contact, DisplacementBound, ElasticConstants, Element, Material, Model, NamedSet,
-    Obstacle, PlaneCondition, Side, Solid, Stage, Surface, Units, Until,
+    BendingStiffness, Component, Contact, ContentEncoding, DisplacementBound, ElasticConstants, Element, Material,
+    Mesh, MeshFormat, MeshGroup, Model, NamedSet, Obstacle, PlaneCondition, Side, Solid, Stage, Surface, Units, Until,
 };
 
 /// A model and how to trace it.

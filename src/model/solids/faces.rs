@@ -34,7 +34,7 @@ pub(crate) fn surface_faces(model: &Model) -> Vec<Vec<FaceMatch>> {
         Some(numbers)
     };
     let wanted: Vec<Vec<Option<Vec<usize>>>> =
-        model.surfaces.values().map(|Surface { faces }| faces.iter().map(|face| sorted(face)).collect()).collect();
+        model.surfaces.values().map(|Surface { faces, .. }| faces.iter().map(|face| sorted(face)).collect()).collect();
     let mut found: HashMap<&[usize], FaceMatch> =
         wanted.iter().flatten().flatten().map(|nodes| (nodes.as_slice(), FaceMatch::None)).collect();
     if !found.is_empty() {

@@ -7,4 +7,5 @@ mod homogeneous;
 mod invariance;
 mod known_contacts;
 mod meshes;
+mod pressure;
 mod rivlin;

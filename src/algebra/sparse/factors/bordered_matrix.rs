@@ -19,7 +19,7 @@ pub struct Bordered {
     pub(crate) right: Vec<SparseEntries>,
     /// Rows of `[C, D]`.
     pub(crate) lower: Vec<SparseEntries>,
-    /// Entries of `K` that were added one by one: only these may be unsymmetric.
+    /// Entries of `K` that were added one by one, or said to differ: only these may be unsymmetric.
     pub(crate) touched: Vec<(usize, usize)>,
     /// Whether an entry was added outside the pattern.
     pub(crate) is_outside: bool,
@@ -46,6 +46,16 @@ impl Bordered {
     /// Adds to the entry of `K` with index `place`, as part of a symmetric contribution.
     pub fn add_at(&mut self, place: usize, value: f64) {
         self.values[place] += value;
+    }
+
+    /// Says of entries (row, column) that they may differ from their mirror images.
+    pub fn let_differ(&mut self, entries: &[(usize, usize)]) {
+        self.touched.extend_from_slice(entries);
+    }
+
+    /// Whether `K` is symmetric, up to round-off.
+    pub fn is_symmetric(&self) -> bool {
+        self.touched.is_empty() || self.symmetrised().lower.len() == self.lower.len()
     }
 
     /// The matrix with `borders` further border rows and columns of zeros.

@@ -22,7 +22,7 @@
 
 use crate::algebra::sparse::{Bordered, held_inertia};
 use crate::algebra::{Determinant, Inertia, SystemFactorisation, determinant, inertia, null_space};
-use crate::branching::bifurcation::singularity::tolerances::ZERO_PIVOT;
+use crate::branching::bifurcation::singularity::tolerances::{ASYMMETRY, ZERO_PIVOT};
 use crate::mechanics::contact::{ContactPair, Mode};
 use crate::mechanics::equations::scaled_rows::scaled_rows;
 use crate::mechanics::equations::tolerances::RANK_TOLERANCE;
@@ -129,6 +129,9 @@ fn count_sparse(
         return Some(None);
     }
     let matrix = matrix::assemble_sparse(&system, &system.iterate(state.clone()), Kind::Rates)?;
+    if loading.structure.has_following_loads() && !matrix.is_symmetric() {
+        return Some(None);
+    }
     inertia_of_sparse(&system, &matrix, work).map(|inertia| Some(inertia.negative))
 }
 
@@ -159,6 +162,9 @@ fn reduced_tangent(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State)
     let constraints = system.size() - 1 - unknowns;
     let matrix = matrix::rate_matrix(system, state);
     let tangent = matrix.view((0, 0), (unknowns, unknowns));
+    if loading.structure.has_following_loads() && (tangent - tangent.transpose()).amax() > ASYMMETRY * tangent.amax() {
+        return None;
+    }
     if constraints == 0 {
         return Some(tangent.into_owned());
     }

@@ -26,3 +26,7 @@ pub(crate) const SINGULAR_PIVOT: f64 = 1e-8;
 /// hundred unit round-offs, which the elimination may leave of a vanishing eigenvalue; a larger one would take soft
 /// parts beside stiff ones for singular.
 pub(crate) const ZERO_PIVOT: f64 = 1e-13;
+
+/// Difference of the tangent and its transpose, relative to the largest entry, beyond which eigenvalues are not counted by
+/// signs of pivots. Sums over the elements leave some unit round-offs.
+pub(crate) const ASYMMETRY: f64 = 1e-13;

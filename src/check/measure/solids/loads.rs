@@ -1,4 +1,5 @@
-//! Body forces and tractions as nodal forces per unit load factor: `b ∫ N_a dV` and `t ∫ N_a dA`.
+//! Body forces and tractions as nodal forces per unit load factor, `b ∫ N_a dV` and `t ∫ N_a dA`, and the nodal forces
+//! `-p ∫ N_a n da` of a pressure on deformed faces.
 
 use crate::check::measure::solids::shapes::Shape;
 use crate::check::measure::solids::{PlacedSolid, PlaneOf, jacobian, padded, shapes};
@@ -46,10 +47,9 @@ impl<'a> SolidShares<'a> {
             for (name, faces) in model.surfaces.keys().zip(surface_faces(model)) {
                 let Some(areas) = shares.areas.get_mut(name.as_str()) else { continue };
                 for face in faces {
-                    if let FaceMatch::Face(face) = face {
-                        for (node, area) in face_areas(model, &face) {
-                            *areas.entry(node).or_default() += area;
-                        }
+                    let FaceMatch::Face(face) = face else { continue };
+                    for (node, area) in MeasuredFace::new(model, &face).iter().flat_map(MeasuredFace::areas) {
+                        *areas.entry(node).or_default() += area;
                     }
                 }
             }
@@ -69,55 +69,98 @@ impl<'a> SolidShares<'a> {
     }
 }
 
+/// A face of a solid, its nodes numbered.
+#[derive(Debug, Clone)]
+pub struct MeasuredFace {
+    placed: PlacedSolid,
+    /// The plane solid of the face's nodes; `None` for a segment.
+    kind: Option<SolidKind>,
+}
+
+impl MeasuredFace {
+    fn new(model: &Model, face: &SolidFace) -> Option<Self> {
+        let (_, solid) = model.elements.get(face.element).and_then(Element::solid)?;
+        let solid = PlacedSolid::new(model, solid)?;
+        let places = face.nodes.iter().map(|node| padded(&model.nodes[*node]) - solid.origin).collect();
+        let kind = match (model.dimension, face.nodes.len()) {
+            (2, _) => None,
+            (_, 3) => Some(SolidKind::Triangle3),
+            (_, 6) => Some(SolidKind::Triangle6),
+            (_, 4) => Some(SolidKind::Quadrilateral4),
+            _ => Some(SolidKind::Quadrilateral8),
+        };
+        Some(Self { placed: PlacedSolid { nodes: face.nodes.clone(), places, ..solid }, kind })
+    }
+
+    /// The area of each node.
+    fn areas(&self) -> Vec<(usize, f64)> {
+        let mut areas = vec![0.0; self.placed.nodes.len()];
+        each_point(&self.placed, self.kind, |values, normal| {
+            let size = normal.norm();
+            areas.iter_mut().zip(values).for_each(|(own, value)| *own += size * value);
+        });
+        self.placed.nodes.iter().copied().zip(areas).collect()
+    }
+
+    /// The force of a pressure on each node, where the nodes have these displacements.
+    pub fn pressed(&self, displacements: &[Vector3<f64>], pressure: f64) -> Vec<(usize, Vector3<f64>)> {
+        let mut moved = self.placed.clone();
+        moved.places.iter_mut().zip(&self.placed.nodes).for_each(|(place, node)| *place += displacements[*node]);
+        let mut forces = vec![Vector3::zeros(); moved.nodes.len()];
+        each_point(&moved, self.kind, |values, normal| {
+            forces.iter_mut().zip(values).for_each(|(own, value)| *own -= normal * (pressure * value));
+        });
+        self.placed.nodes.iter().copied().zip(forces).collect()
+    }
+}
+
+/// For each surface that some stage presses, its name and its faces, in the order of the surfaces.
+pub fn pressed_surfaces(model: &Model) -> Vec<(&str, Vec<MeasuredFace>)> {
+    let is_pressed = |name: &str| model.stages.iter().any(|stage| stage.pressures.contains_key(name));
+    if !model.surfaces.keys().any(|name| is_pressed(name)) {
+        return Vec::new();
+    }
+    let faces = |faces: Vec<FaceMatch>| {
+        let one =
+            |face: &FaceMatch| if let FaceMatch::Face(face) = face { MeasuredFace::new(model, face) } else { None };
+        faces.iter().filter_map(one).collect()
+    };
+    let all = model.surfaces.keys().zip(surface_faces(model)).filter(|(name, _)| is_pressed(name));
+    all.map(|(name, own)| (name.as_str(), faces(own))).collect()
+}
+
+/// Calls `each` with the shape functions at the points of a rule and the outward normal times the area of the point.
+///
 /// Faces in space are plane solids of their own; on a triangle the rule of the square is collapsed onto it (a rule of high
 /// degree), so that no rule is shared with the element's.
-fn face_areas(model: &Model, face: &SolidFace) -> Vec<(usize, f64)> {
-    let Some((_, solid)) = model.elements.get(face.element).and_then(Element::solid) else { return Vec::new() };
-    let Some(solid) = PlacedSolid::new(model, solid) else { return Vec::new() };
-    let places: Vec<Vector3<f64>> = face.nodes.iter().map(|node| padded(&model.nodes[*node])).collect();
-    let on_face = PlacedSolid { nodes: face.nodes.clone(), places: places.clone(), ..solid };
-    let mut areas = vec![0.0; face.nodes.len()];
-    let mut add = |values: &[f64], area: f64| {
-        let size = area * on_face.around(values);
-        areas.iter_mut().zip(values).for_each(|(own, value)| *own += size * value);
-    };
-    let kind = match (model.dimension, face.nodes.len()) {
-        (2, _) => None,
-        (_, 3) => Some(SolidKind::Triangle3),
-        (_, 6) => Some(SolidKind::Triangle6),
-        (_, 4) => Some(SolidKind::Quadrilateral4),
-        _ => Some(SolidKind::Quadrilateral8),
-    };
-    match kind {
-        None => {
-            for (at, weight) in LINE {
-                let (values, slopes) = line_functions(face.nodes.len(), at);
-                let tangent: Vector3<f64> = slopes.iter().zip(&places).map(|(slope, place)| place * *slope).sum();
-                add(&values, weight * tangent.norm());
-            }
+fn each_point(face: &PlacedSolid, kind: Option<SolidKind>, mut each: impl FnMut(&[f64], Vector3<f64>)) {
+    let Some(kind) = kind else {
+        for (at, weight) in LINE {
+            let (values, slopes) = line_functions(face.nodes.len(), at);
+            let tangent: Vector3<f64> = slopes.iter().zip(&face.places).map(|(slope, place)| place * *slope).sum();
+            // The body lies to the left of its outline.
+            each(&values, Vector3::new(tangent.y, -tangent.x, 0.0) * (weight * face.around(&values)));
         }
-        Some(kind) => {
-            let shape = Shape::of(kind);
-            let (_, is_simplex) = shapes::form(kind);
-            for (x, by_x) in LINE {
-                for (y, by_y) in LINE {
-                    // The square onto the triangle: one side shrinks to a corner.
-                    let (at, weight) = if is_simplex {
-                        let (u, v) = (0.5 * (1.0 + x), 0.5 * (1.0 + y));
-                        ([u, v * (1.0 - u), 0.0], 0.25 * by_x * by_y * (1.0 - u))
-                    } else {
-                        ([x, y, 0.0], by_x * by_y)
-                    };
-                    let here = shape.at(at);
-                    let along = |axis: usize| -> Vector3<f64> {
-                        here.slopes.iter().zip(&places).map(|(slope, place)| place * slope[axis]).sum()
-                    };
-                    add(&here.values, weight * along(0).cross(&along(1)).norm());
-                }
-            }
+        return;
+    };
+    let shape = Shape::of(kind);
+    let (_, is_simplex) = shapes::form(kind);
+    for (x, by_x) in LINE {
+        for (y, by_y) in LINE {
+            // The square onto the triangle: one side shrinks to a corner.
+            let (at, weight) = if is_simplex {
+                let (u, v) = (0.5 * (1.0 + x), 0.5 * (1.0 + y));
+                ([u, v * (1.0 - u), 0.0], 0.25 * by_x * by_y * (1.0 - u))
+            } else {
+                ([x, y, 0.0], by_x * by_y)
+            };
+            let here = shape.at(at);
+            let along = |axis: usize| -> Vector3<f64> {
+                here.slopes.iter().zip(&face.places).map(|(slope, place)| place * slope[axis]).sum()
+            };
+            each(&here.values, along(0).cross(&along(1)) * weight);
         }
     }
-    face.nodes.iter().copied().zip(areas).collect()
 }
 
 /// The functions of a segment of two nodes, or of three with the middle one last, and their slopes.

@@ -14,7 +14,7 @@ mod shapes;
 #[cfg(test)]
 mod tests;
 
-pub(super) use loads::SolidShares;
+pub(super) use loads::{MeasuredFace, SolidShares, pressed_surfaces};
 
 use crate::model::request::{LockingMend, Model, PlaneCondition, Solid, SolidKind};
 use hourglass::MeanConstants;
@@ -120,7 +120,9 @@ pub(super) struct SolidResponse {
 }
 
 /// Numbers and places of a solid's nodes: from the first one, radii kept in a body of revolution.
+#[derive(Debug, Clone)]
 struct PlacedSolid {
+    origin: Vector3<f64>,
     nodes: Vec<usize>,
     places: Vec<Vector3<f64>>,
     plane: PlaneOf,
@@ -144,7 +146,7 @@ impl PlacedSolid {
         let places = nodes.iter().map(|node| padded(&model.nodes[*node]) - origin).collect();
         let is_plane = matches!(plane, PlaneOf::Strain | PlaneOf::Stress);
         let thickness = if is_plane { solid.thickness.unwrap_or(1.0) } else { 1.0 };
-        Some(Self { nodes, places, plane, thickness })
+        Some(Self { origin, nodes, places, plane, thickness })
     }
 
     /// The thickness, or the circumference, where the shape functions have these values.

@@ -101,8 +101,8 @@ fn usual_stiffness(structure: &Structure, still: &[f64]) -> f64 {
         });
         sum.abs() / at.element.nodes().len() as f64
     };
-    let is_linear = structure.is_linear();
-    let counts = |at: &ElementAt<'_>| is_linear || !at.element.is_linear();
+    let is_linear = structure.resists_linearly();
+    let counts = |at: &ElementAt<'_>| !at.element.is_load() && (is_linear || !at.element.is_linear());
     let mut all: Vec<f64> = structure.elements().filter(counts).map(of_element).collect();
     all.sort_by(f64::total_cmp);
     all.get(all.len().saturating_sub(1) / 2).copied().unwrap_or(0.0)

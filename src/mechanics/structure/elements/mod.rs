@@ -81,6 +81,11 @@ pub trait FiniteElement: Debug + Send + Sync {
         None
     }
 
+    /// Whether the element stands for a load: it stores no energy and resists no motion.
+    fn is_load(&self) -> bool {
+        false
+    }
+
     /// Whether the nodal forces are linear in the displacements.
     fn is_linear(&self) -> bool {
         false

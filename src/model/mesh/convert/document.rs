@@ -49,7 +49,9 @@ impl<'a> Request<'a> {
     pub fn new(model: &'a ConvertedModel<'a>) -> Self {
         let mesh = model.mesh;
         let described = mesh.materials.iter().filter(|(_, material)| material.law.is_some());
+        // `@name` of a surface stands for its nodes, too.
         let names = mesh.node_sets.keys().chain(mesh.element_sets.keys());
+        let names = names.filter(|name| !mesh.surfaces.contains_key(*name));
         let set = |name: &String| SetEntry {
             nodes: NodeNames(model, mesh.node_sets.get(name).map_or(&[], Vec::as_slice)),
             elements: ElementNames(model, mesh.element_sets.get(name).map_or(&[], Vec::as_slice)),

@@ -78,7 +78,7 @@ impl<'a> ConvertedModel<'a> {
 }
 
 /// Checks that the nodes of plane elements have the same z.
-fn check_flat(mesh: &MeshData, is_used: &[bool]) -> Result<(), MeshError> {
+pub fn check_flat(mesh: &MeshData, is_used: &[bool]) -> Result<(), MeshError> {
     let used = || mesh.coordinates.iter().zip(&mesh.node_labels).zip(is_used).filter(|(_, is_used)| **is_used);
     let mut first = None;
     let mut size = 0.0_f64;

@@ -46,11 +46,13 @@ fn counts(model: &ConvertedModel) -> String {
     }
     let elements: Vec<String> = shapes.iter().map(|(shape, count)| format!("{count} {shape}")).collect();
     let nodes = model.is_used.iter().filter(|is_used| **is_used).count();
-    let other_sets = mesh.element_sets.keys().filter(|name| !mesh.node_sets.contains_key(*name)).count();
+    let is_set = |name: &&String| !mesh.surfaces.contains_key(*name);
+    let node_sets = mesh.node_sets.keys().filter(is_set).count();
+    let other_sets = mesh.element_sets.keys().filter(is_set).filter(|name| !mesh.node_sets.contains_key(*name)).count();
     format!(
         "{nodes} nodes, {}; {} sets, {} surfaces, {} materials",
         elements.join(", "),
-        mesh.node_sets.len() + other_sets,
+        node_sets + other_sets,
         mesh.surfaces.len(),
         mesh.materials.values().filter(|material| material.law.is_some()).count()
     )

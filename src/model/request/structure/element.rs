@@ -3,6 +3,7 @@
 use crate::mechanics::structure::elements::bar::Strain;
 use crate::mechanics::structure::elements::solid::shapes::kind::SolidKind;
 use crate::model::request::structure::component::Component;
+use crate::model::request::structure::mesh::MeshGroup;
 use crate::model::request::structure::solid::Solid;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -104,6 +105,8 @@ pub enum Element {
     Hexahedron8(Solid),
     /// A quadratic hexahedron.
     Hexahedron20(Solid),
+    /// The elements of a group of the mesh, each a solid of its kind.
+    Solid(MeshGroup),
 }
 
 /// The stiffness of a beam against bending (force times length squared).
@@ -308,7 +311,11 @@ impl Element {
     /// The data of a solid, to be changed; `None` for other elements.
     pub fn solid_mut(&mut self) -> Option<&mut Solid> {
         match self {
-            Self::Bar { .. } | Self::Spring { .. } | Self::Beam { .. } | Self::RotationalSpring { .. } => None,
+            Self::Bar { .. }
+            | Self::Spring { .. }
+            | Self::Beam { .. }
+            | Self::RotationalSpring { .. }
+            | Self::Solid(_) => None,
             Self::Triangle3(solid)
             | Self::Triangle6(solid)
             | Self::Quadrilateral4(solid)
@@ -337,7 +344,11 @@ impl Element {
     /// The kind and the data of a solid; `None` for other elements.
     pub fn solid(&self) -> Option<(SolidKind, &Solid)> {
         match self {
-            Self::Bar { .. } | Self::Spring { .. } | Self::Beam { .. } | Self::RotationalSpring { .. } => None,
+            Self::Bar { .. }
+            | Self::Spring { .. }
+            | Self::Beam { .. }
+            | Self::RotationalSpring { .. }
+            | Self::Solid(_) => None,
             Self::Triangle3(solid) => Some((SolidKind::Triangle3, solid)),
             Self::Triangle6(solid) => Some((SolidKind::Triangle6, solid)),
             Self::Quadrilateral4(solid) => Some((SolidKind::Quadrilateral4, solid)),

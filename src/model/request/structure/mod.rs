@@ -8,6 +8,7 @@
 mod component;
 mod element;
 mod material;
+mod mesh;
 mod model;
 mod obstacle;
 mod solid;
@@ -17,6 +18,7 @@ mod surface;
 pub use component::Component;
 pub use element::{BendingStiffness, Element};
 pub use material::{ElasticConstants, Material};
+pub use mesh::{ContentEncoding, Mesh, MeshFormat, MeshGroup};
 pub use model::{Model, Units};
 pub use obstacle::{Contact, Obstacle, Side};
 pub use solid::{PlaneCondition, Solid};

@@ -3,6 +3,7 @@
 use crate::model::request::structure::component::Component;
 use crate::model::request::structure::element::Element;
 use crate::model::request::structure::material::Material;
+use crate::model::request::structure::mesh::Mesh;
 use crate::model::request::structure::obstacle::{Contact, Obstacle};
 use crate::model::request::structure::stage::Stage;
 use crate::model::request::structure::surface::{NamedSet, Surface};
@@ -23,7 +24,11 @@ pub struct Model {
     /// 2 or 3.
     #[cfg_attr(feature = "server", schema(minimum = 2, maximum = 3))]
     pub dimension: usize,
+    /// A mesh file, whose parts join those given here.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<Mesh>,
     /// Node name to coordinates (length, `dimension` of them).
+    #[serde(default)]
     pub nodes: IndexMap<String, Vec<f64>>,
     /// Node name to the components held.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
@@ -31,7 +36,7 @@ pub struct Model {
     /// Name to material of solids.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub materials: IndexMap<String, Material>,
-    /// Bars, springs, beams and solids.
+    /// Bars, springs, beams, solids, and groups of a mesh.
     pub elements: Vec<Element>,
     /// Name to faces of solids.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
@@ -104,6 +109,7 @@ impl Model {
             name: None,
             units: None,
             dimension,
+            mesh: None,
             nodes: IndexMap::new(),
             supports: IndexMap::new(),
             materials: IndexMap::new(),
@@ -140,7 +146,7 @@ impl Model {
     /// With a surface of faces, in place of one of the same name.
     #[must_use]
     pub fn surface(mut self, name: impl Into<String>, faces: Vec<Vec<String>>) -> Self {
-        self.surfaces.insert(name.into(), Surface { faces });
+        self.surfaces.insert(name.into(), Surface { faces, group: None });
         self
     }
 

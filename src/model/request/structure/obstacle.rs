@@ -59,13 +59,17 @@ pub enum Side {
     Inside,
 }
 
-/// One node against one obstacle.
+/// A node, or the nodes of a surface, against an obstacle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
-    /// Name of the node.
+    /// Name of the node; `@` and a name: the nodes of a set or surface. Absent where `surface` is given.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub node: String,
+    /// Name of a surface, whose nodes touch, in place of `node`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub surface: Option<String>,
     /// Name of the obstacle.
     pub obstacle: String,
     /// Coulomb's coefficient, 0 or more; 0 is frictionless.
@@ -77,6 +81,6 @@ pub struct Contact {
 impl Contact {
     /// A node against an obstacle with Coulomb's coefficient of friction (dimensionless, 0 or more).
     pub fn new(node: impl Into<String>, obstacle: impl Into<String>, friction: f64) -> Self {
-        Self { node: node.into(), obstacle: obstacle.into(), friction }
+        Self { node: node.into(), surface: None, obstacle: obstacle.into(), friction }
     }
 }

@@ -29,6 +29,10 @@ pub struct Stage {
     /// Surface name to force per undeformed area, which keeps its direction; multiplied by the load factor.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub tractions: IndexMap<String, Vec<f64>>,
+    /// Surface name to pressure (force per deformed area) on it, which follows the surface; above 0 it presses on the solid.
+    /// Multiplied by the load factor.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub pressures: IndexMap<String, f64>,
     /// Obstacle name to translation (length); multiplied by the load factor.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub obstacle_motion: IndexMap<String, Vec<f64>>,
@@ -57,6 +61,7 @@ impl Stage {
             displacements: IndexMap::new(),
             body_forces: IndexMap::new(),
             tractions: IndexMap::new(),
+            pressures: IndexMap::new(),
             obstacle_motion: IndexMap::new(),
             until: None,
         }
@@ -94,6 +99,13 @@ impl Stage {
     #[must_use]
     pub fn traction(mut self, surface: impl Into<String>, traction: impl Into<Vec<f64>>) -> Self {
         self.tractions.insert(surface.into(), traction.into());
+        self
+    }
+
+    /// With a pressure on a surface (force per deformed area), in place of one given before.
+    #[must_use]
+    pub fn pressure(mut self, surface: impl Into<String>, pressure: f64) -> Self {
+        self.pressures.insert(surface.into(), pressure);
         self
     }
 

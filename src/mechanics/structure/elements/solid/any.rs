@@ -63,7 +63,7 @@ where
 }
 
 /// The first `N` positions in `D` dimensions.
-fn leading<const N: usize, const D: usize>(positions: &[[f64; 3]]) -> [[f64; D]; N] {
+pub(super) fn leading<const N: usize, const D: usize>(positions: &[[f64; 3]]) -> [[f64; D]; N] {
     std::array::from_fn(|node| std::array::from_fn(|axis| positions.get(node).map_or(0.0, |position| position[axis])))
 }
 

@@ -19,6 +19,7 @@
 pub mod any;
 pub mod formulations;
 pub mod loads;
+pub mod pressure_face;
 pub mod shapes;
 #[cfg(test)]
 mod tests;
