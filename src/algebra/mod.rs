@@ -118,6 +118,19 @@ pub fn nearest_null_space(work: DMatrix<f64>, dimension: usize) -> Option<DMatri
     eliminated(work, 0.0, most)
 }
 
+/// The largest absolute value of finite numbers. Several running maxima, which do not wait for each other.
+fn largest_size(values: &[f64]) -> f64 {
+    let mut largest = [0.0_f64; 8];
+    let mut chunks = values.chunks_exact(8);
+    for chunk in &mut chunks {
+        for (most, value) in largest.iter_mut().zip(chunk) {
+            let size = value.abs();
+            *most = if size > *most { size } else { *most };
+        }
+    }
+    chunks.remainder().iter().chain(&largest).fold(0.0, |most, value| value.abs().max(most))
+}
+
 /// Eliminates with complete pivoting until the pivots are small or the rank reaches `most`; returns a basis of the null
 /// space of the eliminated rows.
 fn eliminated(mut work: DMatrix<f64>, tolerance: f64, most: usize) -> Option<DMatrix<f64>> {
@@ -131,12 +144,13 @@ fn eliminated(mut work: DMatrix<f64>, tolerance: f64, most: usize) -> Option<DMa
     while rank < rows.min(columns).min(most) {
         budget::spend((rows - rank) * (columns - rank));
         let (mut best, mut place) = (0.0_f64, (rank, rank));
-        for column in rank..columns {
-            for (row, value) in work.column(column).iter().enumerate().skip(rank) {
-                if value.abs() > best {
-                    best = value.abs();
-                    place = (row, column);
-                }
+        for (column, values) in work.as_slice().chunks_exact(rows).enumerate().skip(rank) {
+            let values = &values[rank..];
+            let largest = largest_size(values);
+            if largest > best
+                && let Some(row) = values.iter().position(|value| value.abs() == largest)
+            {
+                (best, place) = (largest, (rank + row, column));
             }
         }
         if rank == 0 {

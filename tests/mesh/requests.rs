@@ -146,7 +146,7 @@ fn mistakes_in_a_mesh_of_a_request_are_told_at_their_places() {
     });
     assert!(without.contains("model.elements[0]: this is a part of a mesh, and the model has none"), "{without}");
     let named = changed(&|model: &mut Value| model["nodes"]["5"] = json!([9, 9]));
-    assert!(named.contains("model.nodes.5: the mesh has a node of this name, too"), "{named}");
+    assert!(named.contains("model.nodes[5]: the mesh has a node of this name, too"), "{named}");
     let unused = changed(&|model: &mut Value| model["elements"] = json!([]));
     assert!(unused.contains("model.elements: no element is made of the mesh"), "{unused}");
 }

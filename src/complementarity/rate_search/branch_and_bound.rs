@@ -57,22 +57,23 @@ pub struct Findings {
     pub planes: Vec<DMatrix<f64>>,
     /// Whether the certificate gives one ray for each sign of the load rate, without any branching.
     pub certified: bool,
-    /// Number of nodes and combinations examined, large ones counted several times.
+    /// Number of nodes and combinations examined, with the work of large ones.
     pub examined: u64,
 }
 
 /// The limits of a search.
 #[derive(Debug, Clone, Copy)]
 pub struct Effort<'a> {
-    /// Largest number of nodes and combinations examined.
+    /// Largest number of nodes and combinations examined; large ones count several times.
     pub most_modes: u64,
     /// Whether the search may end where a certificate proves one ray for each sign of the load rate.
     pub certify: bool,
     pub cancel: &'a CancelFlag,
 }
 
-/// Number of dictionary entries that count as one unit of work; a larger node counts several times.
-const UNIT_OF_WORK: u64 = 4096;
+/// Number of matrix entries changed, in dictionaries and eliminations, that count as one more node. Nodes of some 20
+/// contacts change as many; with hundreds of contacts a search thus takes no longer than with a few.
+const UNIT_OF_WORK: u64 = 32_768;
 /// Largest number of nodes inside solution sets of more than one dimension, whose edges are rays like any other.
 const MOST_IN_SETS: u64 = 512;
 
@@ -102,7 +103,7 @@ fn explore_by(
         effort,
         common: Vec::new(),
         coupling: DMatrix::zeros(0, 0),
-        cost: 1 + (problem.forms.nrows() * problem.weights()) as u64 / UNIT_OF_WORK,
+        work: 0,
     };
     if !certified_rays::certified_at_once(&mut search) {
         for chosen in first() {
@@ -152,11 +153,18 @@ pub(crate) struct BranchAndBound<'a> {
     common: Vec<Vec<Signed>>,
     /// The strength of coupling between entities; set when branching begins.
     coupling: DMatrix<f64>,
-    /// Work units per node: larger problems take longer per node.
-    pub cost: u64,
+    /// Number of matrix entries changed since the last unit of work was counted.
+    work: u64,
 }
 
 impl BranchAndBound<'_> {
+    /// Counts one node or combination and the number of matrix entries changed for it.
+    pub fn count(&mut self, entries: u64) {
+        self.work = self.work.saturating_add(entries);
+        self.findings.examined += 1 + self.work / UNIT_OF_WORK;
+        self.work %= UNIT_OF_WORK;
+    }
+
     fn branch(&mut self) {
         self.common = self.problem.entities.iter().map(Entity::common).collect();
         let Some(dictionary) = Dictionary::new(self.problem, &self.common) else {
@@ -187,22 +195,23 @@ impl BranchAndBound<'_> {
             let task = match tasks.pop() {
                 Some(task) => task,
                 None if left_in_sets > 0 => match in_sets.pop() {
-                    Some(task) => {
-                        left_in_sets = left_in_sets.saturating_sub(self.cost);
-                        task
-                    }
+                    Some(task) => task,
                     None => return,
                 },
                 None => break,
             };
+            let before = self.findings.examined;
+            let in_set = task.parent.in_set;
             if self.effort.cancel.is_cancelled() || self.findings.examined >= self.effort.most_modes {
                 tasks.push(task);
                 break;
             }
-            self.findings.examined += self.cost;
             budget::spend(self.problem.weights());
             for child in self.look_at(task) {
                 if child.parent.in_set { in_sets.push(child) } else { tasks.push(child) }
+            }
+            if in_set {
+                left_in_sets = left_in_sets.saturating_sub(self.findings.examined - before);
             }
         }
         for task in tasks.iter().chain(&in_sets) {
@@ -224,11 +233,15 @@ impl BranchAndBound<'_> {
 
     /// Closes a node or returns its children, the most promising last.
     fn look_at(&mut self, task: Task) -> Vec<Task> {
-        let Some(mut node) = decide(self.problem, task) else { return Vec::new() };
-        if simplex::feasibility(&mut node.dictionary) == Feasibility::OnlyLines
+        let Some(mut node) = decide(self.problem, task) else {
+            self.count(0);
+            return Vec::new();
+        };
+        let is_empty = simplex::feasibility(&mut node.dictionary) == Feasibility::OnlyLines
             && !node.dictionary.is_lines_only()
-            && !node.dictionary.leave_lines()
-        {
+            && !node.dictionary.leave_lines();
+        self.count(node.dictionary.entries_changed());
+        if is_empty {
             return Vec::new();
         }
         let open: Vec<usize> = (0..node.chosen.len()).filter(|&index| node.chosen[index].is_none()).collect();
@@ -346,6 +359,7 @@ fn decide(problem: &RateProblem, task: Task) -> Option<SearchNode> {
         in_set: parent.in_set,
         last: task.decision.map(|(entity, _)| entity),
     };
+    node.dictionary.begin_count();
     let Some((entity, choice)) = task.decision else { return Some(node) };
     node.chosen[entity] = Some(choice);
     let choice = &problem.entities[entity].options[choice];

@@ -29,7 +29,9 @@ pub(crate) fn examine(search: &mut BranchAndBound<'_>, chosen: &[usize]) -> Exam
         return Examined::Before;
     }
     search.held.add::<usize>(chosen.len());
-    search.findings.examined += search.cost;
+    // An elimination with complete pivoting: search of the pivot, exchange, update.
+    let weights = search.problem.weights() as u64;
+    search.count(weights.saturating_pow(3));
     match ray_of_combination::line(search.problem, chosen) {
         Line::Nothing => Examined::Nothing,
         Line::Along(weights) => {

@@ -59,6 +59,8 @@ pub struct Dictionary {
     nonnegative: Vec<bool>,
     /// The cone has been found to contain only lines: `t = 0`, and every form known to be nonnegative is zero.
     lines_only: bool,
+    /// Number of entries changed since [`begin_count`](Self::begin_count).
+    entries_changed: u64,
     _held: Taken,
 }
 
@@ -102,12 +104,23 @@ impl Dictionary {
             sign: vec![1.0; count],
             nonnegative: vec![false; count],
             lines_only: false,
+            entries_changed: 0,
             _held: held,
         };
         common.iter().flatten().for_each(|signed| dictionary.declare(*signed));
         dictionary.normalise(count);
         while dictionary.replace_weight().is_some() {}
         Some(dictionary)
+    }
+
+    /// Begins to count the entries that change, with those of a copy.
+    pub fn begin_count(&mut self) {
+        self.entries_changed = self.table.len() as u64;
+    }
+
+    /// Number of entries changed since [`begin_count`](Self::begin_count).
+    pub fn entries_changed(&self) -> u64 {
+        self.entries_changed
     }
 
     /// Makes `t` the first column.
@@ -173,7 +186,9 @@ impl Dictionary {
     fn exchange(&mut self, row: usize, column: usize) {
         let width = self.width;
         let used = self.columns.len();
-        budget::spend(self.table.len() / width * used);
+        let entries = self.table.len() / width * used;
+        budget::spend(entries);
+        self.entries_changed += entries as u64;
         let start = row * width;
         let inverse = 1.0 / self.table[start + column];
         for k in 0..used {
