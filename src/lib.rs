@@ -145,7 +145,7 @@ pub use model::decode::expand_sets;
 pub use model::request::{
     Analysis, ArcLength, Certificate, Component, Contact, ContactRange, ContentEncoding, DisplacementBound,
     ElasticConstants, Element, ElementReference, Events, Explore, ForceRange, JobRequest, LoadSign, LockingMend,
-    Material, Mesh, MeshFormat, MeshGroup, Method, Model, Mpec, NamedSet, Obstacle, PlaneCondition, Record,
+    Material, MeshFile, MeshFormat, MeshGroup, Method, Model, Mpec, NamedSet, Obstacle, PlaneCondition, Record,
     RecordedContact, RecordedContacts, RecordedElements, RecordedSupports, Regularised, Side, Solid, SolidKind, Stage,
     Surface, Units, Until,
 };

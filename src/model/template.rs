@@ -11,8 +11,8 @@ pub(super) struct Template {
     members: Vec<Member>,
     /// The request with the first values, if it can be read; apart from the varied places all requests are equal to it.
     first: Option<JobRequest>,
-    /// Whether a name may stand for a set or surface: parts of the model then depend on others.
-    names_sets: bool,
+    /// Whether a name may stand for a set, a surface or a part of a mesh: parts of the model then depend on others.
+    has_names_of_parts: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -57,9 +57,9 @@ impl Template {
                 }
             }
         }
-        let mut template = Self { members, first: None, names_sets: false };
+        let mut template = Self { members, first: None, has_names_of_parts: false };
         let text = template.text(first, true);
-        template.names_sets = text.contains("\"@");
+        template.has_names_of_parts = ["\"@", "\"mesh\"", "\"surface\""].iter().any(|mark| text.contains(mark));
         template.first = decode::decode(text.as_bytes()).ok();
         template
     }
@@ -76,7 +76,7 @@ impl Template {
 
     /// The request, composed of its common and its varied parts; `None` if this is not possible, for example because of mistakes.
     fn read(&self, values: &[Value]) -> Option<JobRequest> {
-        let first = self.first.as_ref().filter(|_| !self.names_sets)?;
+        let first = self.first.as_ref().filter(|_| !self.has_names_of_parts)?;
         let differing = decode::decode(self.text(values, false).as_bytes()).ok()?;
         let JobRequest { model: other, analysis } = differing;
         let mut model = first.model.clone();

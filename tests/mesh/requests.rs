@@ -97,6 +97,13 @@ fn groups_sets_and_surfaces_of_the_mesh_are_those_of_the_model() {
     let touching: Vec<&Value> =
         model["contacts"].as_array().expect("contacts").iter().map(|one| &one["node"]).collect();
     assert_eq!(touching, ["3", "4", "6"]);
+    let mut request = two_groups();
+    request["analysis"] = json!({"record": {"elements": ["@left", 1]}});
+    let recorded = decode(request.to_string().as_bytes()).expect("a request").analysis.record.expect("a record");
+    assert_eq!(serde_json::to_value(recorded.elements).expect("JSON"), json!(["e1", 1]));
+    request["analysis"]["record"]["elements"] = json!(["@foot"]);
+    let refused = decode(request.to_string().as_bytes()).expect_err("a mistake").to_string();
+    assert!(refused.contains("analysis.record.elements[0]: there is no set of elements `foot`"), "{refused}");
     assert!(model.get("mesh").is_none() && model["contacts"][0].get("surface").is_none());
     arcslip::read(two_groups().to_string().as_bytes()).expect("a sound model");
 }
@@ -130,7 +137,9 @@ fn mistakes_in_a_mesh_of_a_request_are_told_at_their_places() {
         ("model.surfaces.lid.group: the mesh has no group of faces `tap`", |model| {
             model["surfaces"]["lid"]["group"] = json!("tap");
         }),
-        ("model.surfaces.lid: `faces` and `group` are given", |model| model["surfaces"]["lid"]["faces"] = json!([])),
+        ("model.surfaces.lid: `faces` and `group` are given", |model| {
+            model["surfaces"]["lid"]["faces"] = json!([["3", "4"]])
+        }),
         ("model.contacts[0]: `node` and `surface` are given", |model| model["contacts"][0]["node"] = json!("1")),
         ("model.contacts[0].surface: there is no set or surface `lad`", |model| {
             model["contacts"][0]["surface"] = json!("lad");

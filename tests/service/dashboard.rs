@@ -126,6 +126,32 @@ async fn columns_hold_what_the_increments_hold() {
     }
 }
 
+/// A request with a mesh is stored as it was posted; expanded, it has the nodes and elements that pages draw.
+#[tokio::test]
+async fn a_mesh_is_posted_within_the_request() {
+    let (_folder, server) = server().await;
+    let deck = "*NODE\n1,0,0\n2,1,0\n3,1,1\n4,0,1\n*ELEMENT,TYPE=CPE4,ELSET=body\n1,1,2,3,4\n\
+                *NSET,NSET=foot\n1,2\n*SURFACE,NAME=top\nbody,S3\n";
+    let request = serde_json::json!({"model": {"dimension": 2, "mesh": {"content": deck},
+        "materials": {"rubber": {"kind": "neo_hookean", "young": 1, "poisson": 0.3}},
+        "elements": [{"kind": "solid", "group": "body", "material": "rubber"}],
+        "supports": {"@foot": ["x", "y"]},
+        "stages": [{"name": "press", "pressures": {"top": 0.1}, "until": {"load_above": 1}}]}});
+    let id = server.submit(&request).await;
+    assert_eq!(server.ended(&id).await["status"], "completed");
+    assert_eq!(server.get_json(&format!("/v1/jobs/{id}/request")).await, request);
+    let expanded = server.get_json(&format!("/v1/jobs/{id}/request?expanded=true")).await;
+    assert_eq!(expanded["model"]["nodes"]["3"], serde_json::json!([1.0, 1.0]));
+    assert_eq!(expanded["model"]["elements"][0]["kind"], "quadrilateral4");
+    assert_eq!(expanded["model"]["supports"]["2"], serde_json::json!(["x", "y"]));
+    let mut by_file = request.clone();
+    by_file["model"]["mesh"] = serde_json::json!({"file": "/etc/hostname"});
+    let refused = server.post("/v1/jobs", &by_file).await;
+    assert_eq!(refused.status(), StatusCode::BAD_REQUEST);
+    let text = refused.text().await.expect("a problem");
+    assert!(text.contains("files are opened by the command line alone"), "{text}");
+}
+
 #[tokio::test]
 async fn a_jobs_request_can_be_posted_again() {
     let (_folder, server) = server().await;

@@ -1,6 +1,9 @@
 """Models without the program: what is built, from lists and from arrays."""
 
+import base64
 import json
+import pathlib
+import tempfile
 import unittest
 
 import arcslip
@@ -123,6 +126,79 @@ class Building(unittest.TestCase):
         self.assertEqual(value_at(document, "/a~1b/0/~0"), 1)
         self.assertIsNone(value_at(document, "/a~1b/1"))
         self.assertIsNone(value_at(document, "/c"))
+
+    def test_every_part_of_a_solid(self):
+        model = arcslip.Model(2)
+        model.nodes([(0, 0), (1, 0), (1, 1), (0, 1)])
+        model.material("rubber", "neo_hookean", young=2, poisson=0.4)
+        self.assertEqual(model.solids("quadrilateral4", [(0, 1, 2, 3)], "rubber", plane="strain"), [0])
+        model.surface("top", [(2, 3)])
+        model.node_set("foot", [0, 1])
+        model.support("@foot", "y")
+        model.plane("floor", (0, 0), (0, 1))
+        model.contact("@foot", "floor", 0.3)
+        model.contact(surface="top", obstacle="floor")
+        model.stage("blow", body_forces={"rubber": (0, -1)}, tractions={"top": (1, 0)}, pressures={"top": 0.1})
+        request = model.request()["model"]
+        self.assertEqual(request["materials"], {"rubber": {"kind": "neo_hookean", "young": 2, "poisson": 0.4}})
+        self.assertEqual(request["elements"], [{
+            "kind": "quadrilateral4", "nodes": ["n0", "n1", "n2", "n3"], "material": "rubber", "plane": "strain"}])
+        self.assertEqual(request["surfaces"], {"top": {"faces": [["n2", "n3"]]}})
+        self.assertEqual(request["sets"], {"foot": {"nodes": ["n0", "n1"]}})
+        self.assertEqual(request["supports"], {"@foot": ["y"]})
+        self.assertEqual([list(contact)[0] for contact in request["contacts"]], ["node", "surface"])
+        self.assertEqual(request["stages"], [{
+            "name": "blow", "body_forces": {"rubber": [0, -1]}, "tractions": {"top": [1, 0]}, "pressures": {"top": 0.1}}])
+        for wrong in (lambda: model.surface("both"), lambda: model.contact(0, "floor", surface="top"), lambda: model.contact(0)):
+            self.assertRaises(ValueError, wrong)
+
+    def test_a_mesh_file_goes_into_the_request(self):
+        with tempfile.TemporaryDirectory() as folder:
+            text, binary = pathlib.Path(folder) / "a.inp", pathlib.Path(folder) / "b.msh"
+            text.write_text("*NODE\n1, 0, 0\n")
+            binary.write_bytes(b"$MeshFormat\n\xff\xfe")
+            model = arcslip.Model(2)
+            model.mesh(text, "abaqus")
+            model.group("body", "rubber", plane="stress")
+            model.surface("rim", group="edge 3")
+            request = model.request()["model"]
+            self.assertEqual(request["mesh"], {"format": "abaqus", "content": "*NODE\n1, 0, 0\n"})
+            self.assertEqual(request["elements"], [
+                {"kind": "solid", "group": "body", "material": "rubber", "plane": "stress"}])
+            self.assertEqual(request["surfaces"], {"rim": {"group": "edge 3"}})
+            model.mesh(binary)
+            mesh = model.request()["model"]["mesh"]
+            self.assertEqual(base64.b64decode(mesh["content"]), b"$MeshFormat\n\xff\xfe")
+            self.assertEqual(mesh["encoding"], "base64")
+
+    @unittest.skipIf(numpy is None, "numpy and meshio are not installed")
+    def test_solids_of_a_mesh_with_its_groups(self):
+        points = numpy.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [9, 9, 0]], dtype=float)
+        cells = [("quad", [[0, 1, 2, 3]]), ("triangle", [[1, 4, 2]]), ("line", [[0, 1], [1, 4]])]
+        mesh = meshio.Mesh(
+            points, [(kind, numpy.array(rows)) for kind, rows in cells],
+            cell_sets={"left": [numpy.array([0]), None, None], "floor": [None, None, numpy.array([0, 1])]},
+            point_sets={"pin": numpy.array([0, 5])},
+        )
+        request = arcslip.Model.from_meshio(mesh, material="matter", plane="strain").request()["model"]
+        self.assertEqual((request["dimension"], len(request["nodes"])), (2, 5))
+        self.assertEqual([element["kind"] for element in request["elements"]], ["quadrilateral4", "triangle3"])
+        self.assertEqual(request["elements"][1], {"kind": "triangle3", "nodes": ["n1", "n4", "n2"], "material": "matter",
+                                                  "name": "e1", "plane": "strain"})
+        self.assertEqual(request["surfaces"], {"floor": {"faces": [["n0", "n1"], ["n1", "n4"]]}})
+        self.assertEqual(request["sets"], {"left": {"elements": ["e0"]}, "pin": {"nodes": ["n0"]}})
+        tagged = meshio.Mesh(
+            points, [(kind, numpy.array(rows)) for kind, rows in cells],
+            cell_data={"gmsh:physical": [numpy.array([7]), numpy.array([7]), numpy.array([8, 9])]},
+            field_data={"body": numpy.array([7, 2]), "low": numpy.array([8, 1])},
+        )
+        request = arcslip.Model.from_meshio(tagged, material="matter", plane="strain").request()["model"]
+        self.assertEqual(request["surfaces"], {"low": {"faces": [["n0", "n1"]]}})
+        self.assertEqual(request["sets"], {"body": {"elements": ["e0", "e1"]}})
+        with self.assertRaisesRegex(ValueError, "either"):
+            arcslip.Model.from_meshio(mesh)
+        with self.assertRaisesRegex(ValueError, "no triangles"):
+            arcslip.Model.from_meshio(meshio.Mesh(points, [("line", numpy.array([[0, 1]]))]), material="matter")
 
     @unittest.skipIf(numpy is None, "numpy and meshio are not installed")
     def test_arrays_and_meshes(self):

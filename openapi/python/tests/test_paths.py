@@ -58,7 +58,30 @@ def cantilever():
     return model
 
 
+def square():
+    """A square of rubber whose surface a pressure presses all around: the stress inside is its negative."""
+    model = arcslip.Model(2)
+    model.nodes([(0, 0), (1, 0), (1, 1), (0, 1)])
+    model.material("rubber", "neo_hookean", young=2, poisson=0.4)
+    model.solid("quadrilateral4", [0, 1, 2, 3], "rubber", plane="strain", name="body")
+    model.surface("rim", [(0, 1), (1, 2), (2, 3), (3, 0)])
+    model.support(0, "xy")
+    model.support(1, "y")
+    model.stage("dive", pressures={"rim": 0.1}, until={"load_above": 1})
+    return model
+
+
 class Program(unittest.TestCase):
+    def test_a_solid_has_the_pressure_around_it(self):
+        path = arcslip.solve(square())
+        self.assertAlmostEqual(path.column("elements/body.stress.xx")[-1], -0.1, delta=1e-12)
+        self.assertAlmostEqual(path.column("elements/body.stress.xy")[-1], 0.0, delta=1e-12)
+        self.assertGreater(path.column("elements/body.von_mises")[-1], 0.0)
+        if matplotlib is not None:
+            mesh = path.to_meshio()
+            self.assertEqual([block.type for block in mesh.cells], ["quad"])
+            self.assertEqual(mesh.cell_data["von_mises"][0][0], path.column("elements/body.von_mises")[-1])
+
     def test_a_beam_rolls_up(self):
         path = arcslip.solve(cantilever())
         self.assertAlmostEqual(path.column("tip.rz")[-1], math.pi, places=8)

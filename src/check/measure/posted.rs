@@ -64,8 +64,8 @@ pub(super) struct PostedStage {
     displacements: PostedLoadPattern,
     rotations: PostedLoadPattern,
     motions: PostedLoadPattern,
-    /// Pressure on each pressed surface.
-    pressures: Vec<f64>,
+    /// Places of pressed surfaces with the pressures that the load factor multiplies.
+    pressures: Vec<(usize, f64)>,
     /// Load factor of a dimensionless load of 1.
     pub load_scale: f64,
 }
@@ -108,8 +108,7 @@ impl Posted {
             Some(PostedContact { node, obstacle, motion, friction: contact.friction })
         };
         let shares = SolidShares::new(model);
-        let pressed = pressed_surfaces(model);
-        let pressure = |stage: &crate::model::request::Stage, name: &str| stage.pressures.get(name).copied();
+        let pressed: IndexMap<&str, Vec<MeasuredFace>> = pressed_surfaces(model).into_iter().collect();
         let scales = load_scales.iter().copied().chain(std::iter::repeat(1.0));
         let stage = |(stage, load_scale): (&crate::model::request::Stage, f64)| PostedStage {
             name: stage.name.clone(),
@@ -127,7 +126,11 @@ impl Posted {
                 stage.displacements.iter().map(|(name, values)| (name, rotation(values, model.dimension))),
             ),
             motions: pattern(&stage.obstacle_motion, &|name| moving.get_index_of(name)),
-            pressures: pressed.iter().map(|(name, _)| pressure(stage, name).unwrap_or(0.0)).collect(),
+            pressures: stage
+                .pressures
+                .iter()
+                .filter_map(|(name, value)| Some((pressed.get_index_of(name.as_str())?, *value)))
+                .collect(),
             load_scale,
         };
         let nodes: Vec<PostedNode> = model.nodes.iter().zip(model.rotating_nodes()).map(node).collect();
@@ -151,7 +154,7 @@ impl Posted {
                 .filter_map(|element| element.solid())
                 .any(|(_, solid)| solid.plane == Some(PlaneCondition::Axisymmetric)),
             stages: model.stages.iter().zip(scales).map(stage).collect(),
-            pressed: pressed.into_iter().map(|(_, faces)| faces).collect(),
+            pressed: pressed.into_values().collect(),
         }
     }
 }
@@ -262,8 +265,9 @@ impl PostedLoading {
                 sums[*place] += values * load;
             }
         }
-        for ((sum, held), pattern) in self.pressures.iter_mut().zip(&held.pressures).zip(&stage.pressures) {
-            *sum = held + pattern * load;
+        self.pressures.copy_from_slice(&held.pressures);
+        for (place, value) in &stage.pressures {
+            self.pressures[*place] += value * load;
         }
     }
 }

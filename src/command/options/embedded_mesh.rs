@@ -2,7 +2,7 @@
 //!
 //! The rest of the text stays as it is, byte by byte, so that mistakes are told at their places.
 
-use crate::model::request::{ContentEncoding, Mesh};
+use crate::model::request::{ContentEncoding, MeshFile};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::Deserialize;
@@ -42,13 +42,13 @@ pub fn embed(text: Vec<u8>, request: &Path) -> Result<Vec<u8>, String> {
 }
 
 /// The mesh of a request that names a file, and the bytes where it stands.
-fn named(text: &[u8]) -> Option<(std::ops::Range<usize>, Mesh)> {
+fn named(text: &[u8]) -> Option<(std::ops::Range<usize>, MeshFile)> {
     let request: Request<'_> = serde_json::from_slice(text).ok()?;
     let model: Model<'_> = serde_json::from_str(request.model?.get()).ok()?;
     let raw = model.mesh?.get();
     // A borrowed part of the text.
     let start = (raw.as_ptr() as usize).checked_sub(text.as_ptr() as usize)?;
-    let mesh: Mesh = serde_json::from_str(raw).ok()?;
+    let mesh: MeshFile = serde_json::from_str(raw).ok()?;
     mesh.file.as_ref()?;
     Some((start..start + raw.len(), mesh))
 }

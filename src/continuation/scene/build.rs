@@ -313,10 +313,9 @@ pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scal
             let freedoms = structure.freedoms_of(*node);
             freedoms.zip(values).for_each(|(freedom, value)| supports[freedom] = value * load_scale / length);
         }
-        for (place, name) in pressed_surfaces(model).into_iter().enumerate() {
-            let pressure = stage.pressures.get(name).copied().unwrap_or(0.0) * load_scale;
+        for (place, pressure) in loaded_solids.pressures(stage) {
             let freedom = structure.freedoms_of(model.nodes.len() + place).start;
-            supports[freedom] = pressure / force * length * length / PRESSURE_UNIT;
+            supports[freedom] = pressure * load_scale / force * length * length / PRESSURE_UNIT;
         }
     }
     let shift = |contact: &request::Contact| {

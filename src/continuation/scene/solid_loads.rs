@@ -15,7 +15,8 @@ use crate::mechanics::structure::elements::solid::pressure_face::push_pressure_f
 use crate::model::request::{Element, Model, Stage};
 use crate::model::solids::data;
 use crate::model::solids::faces::{FaceMatch, SolidFace, surface_faces};
-use std::collections::{BTreeMap, HashMap};
+use indexmap::IndexSet;
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// What each node stands for: a volume or an area, in the user's units.
 type NodalShares = BTreeMap<usize, f64>;
@@ -25,6 +26,8 @@ type NodalShares = BTreeMap<usize, f64>;
 pub(super) struct LoadedSolids<'a> {
     volumes: HashMap<&'a str, NodalShares>,
     areas: HashMap<&'a str, NodalShares>,
+    /// See [`pressed_surfaces`].
+    pressed: IndexSet<&'a str>,
 }
 
 /// A component of unit size: its nodal forces are the shares of the nodes.
@@ -32,7 +35,7 @@ const UNIT: [f64; 3] = [1.0, 0.0, 0.0];
 
 impl<'a> LoadedSolids<'a> {
     pub fn new(model: &'a Model, numbers: &'a HashMap<&'a str, usize>) -> Self {
-        let mut loaded = Self::default();
+        let mut loaded = Self { pressed: pressed_surfaces(model), ..Self::default() };
         for stage in &model.stages {
             loaded.volumes.extend(stage.body_forces.keys().map(|name| (name.as_str(), NodalShares::new())));
             let surfaces = stage.tractions.keys().chain(stage.pressures.keys());
@@ -80,6 +83,11 @@ impl<'a> LoadedSolids<'a> {
         }
     }
 
+    /// The pressures of a stage, in the user's units, each with the place of its surface among the pressed ones.
+    pub fn pressures(&self, stage: &Stage) -> impl Iterator<Item = (usize, f64)> {
+        stage.pressures.iter().filter_map(|(name, value)| Some((self.pressed.get_index_of(name.as_str())?, *value)))
+    }
+
     /// The largest resultant of a load of a stage, in the user's units; it depends neither on the mesh nor on the axes.
     pub fn largest_resultant(&self, stage: &Stage) -> f64 {
         let resultant = |(shares, density): (&NodalShares, [f64; 3])| norm(&density) * shares.values().sum::<f64>();
@@ -94,18 +102,19 @@ impl<'a> LoadedSolids<'a> {
 
 /// The surfaces that some stage presses, in the order of the model's surfaces. The auxiliary node of the first has the
 /// number after the last node of the model, and so on.
-pub(super) fn pressed_surfaces(model: &Model) -> Vec<&str> {
-    let is_pressed = |name: &&String| model.stages.iter().any(|stage| stage.pressures.contains_key(name.as_str()));
-    model.surfaces.keys().filter(is_pressed).map(String::as_str).collect()
+pub(super) fn pressed_surfaces(model: &Model) -> IndexSet<&str> {
+    let named: HashSet<&str> =
+        model.stages.iter().flat_map(|stage| stage.pressures.keys()).map(String::as_str).collect();
+    model.surfaces.keys().map(String::as_str).filter(|name| named.contains(name)).collect()
 }
 
 /// Adds the faces of the pressed surfaces to the elements.
-pub(super) fn add_pressure_faces(model: &Model, pressed: &[&str], length: f64, elements: &mut ElementList) {
+pub(super) fn add_pressure_faces(model: &Model, pressed: &IndexSet<&str>, length: f64, elements: &mut ElementList) {
     if pressed.is_empty() {
         return;
     }
     for (name, faces) in model.surfaces.keys().zip(surface_faces(model)) {
-        let Some(place) = pressed.iter().position(|own| own == name) else { continue };
+        let Some(place) = pressed.get_index_of(name.as_str()) else { continue };
         for face in faces {
             let FaceMatch::Face(face) = face else { continue };
             let Some((_, solid)) = model.elements.get(face.element).and_then(Element::solid) else { continue };

@@ -8,14 +8,13 @@ use crate::model::decode::solids::{LOCKING, PLANE_CONDITION};
 use crate::model::input::limits::{MAX_ELEMENTS, MAX_NODES};
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{quoted, suggestion};
-use crate::model::mesh;
 use crate::model::mesh::convert::check_flat;
 use crate::model::mesh::data::element_shape::ElementShape;
 use crate::model::mesh::data::mesh_data::{DeckLaw, DeckMaterial, MeshData, PlaneState};
 use crate::model::mesh::data::node_lists::NodeLists;
 use crate::model::request::{
-    ContentEncoding, ElasticConstants, Element, Material, Mesh, MeshFormat, MeshGroup, Model, NamedSet, PlaneCondition,
-    Solid, Surface,
+    ContentEncoding, ElasticConstants, Element, Material, MeshFile, MeshFormat, MeshGroup, Model, NamedSet,
+    PlaneCondition, Solid, Surface,
 };
 use crate::model::solids::faces::{FaceMatch, surface_faces};
 use base64::Engine;
@@ -42,13 +41,13 @@ const ENCODING: Choices<ContentEncoding> = Choices {
     later: &[],
 };
 
-pub(super) fn mesh(input: &Input, mistakes: &mut Mistakes) -> Option<Mesh> {
+pub(super) fn mesh(input: &Input, mistakes: &mut Mistakes) -> Option<MeshFile> {
     let object = input.object(&MESH, mistakes)?;
     let format = object.optional("format", mistakes, |input, mistakes| input.choice(&FORMAT, mistakes));
     let content = object.optional("content", mistakes, text);
     let encoding = object.optional("encoding", mistakes, |input, mistakes| input.choice(&ENCODING, mistakes));
     let file = object.optional("file", mistakes, text);
-    Some(Mesh { format: format?, content: content?, encoding: encoding?, file: file? })
+    Some(MeshFile { format: format?, content: content?, encoding: encoding?, file: file? })
 }
 
 pub(super) fn group(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
@@ -101,7 +100,7 @@ fn refuse_groups(model: &Model, at: &DocumentPlace, mistakes: &mut Mistakes) {
     }
 }
 
-fn read(given: &Mesh, at: &DocumentPlace, mistakes: &mut Mistakes) -> Option<MeshData> {
+fn read(given: &MeshFile, at: &DocumentPlace, mistakes: &mut Mistakes) -> Option<MeshData> {
     let Some(content) = &given.content else {
         mistakes.add(at, || match given.file {
             Some(_) => "files are opened by the command line alone; put the text of the file into `content`",
@@ -125,9 +124,8 @@ fn read(given: &Mesh, at: &DocumentPlace, mistakes: &mut Mistakes) -> Option<Mes
         },
     };
     let format = match given.format {
-        Some(MeshFormat::Gmsh) => Ok(mesh::MeshFormat::Gmsh),
-        Some(MeshFormat::Abaqus) => Ok(mesh::MeshFormat::Abaqus),
-        None => mesh::MeshFormat::of(&bytes),
+        Some(format) => Ok(format),
+        None => MeshFormat::of(&bytes),
     };
     match format.and_then(|format| format.read(&bytes)) {
         Ok(data) => Some(data),

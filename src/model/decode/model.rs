@@ -339,15 +339,17 @@ fn ball(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {
 
 fn contact(input: &Input, mistakes: &mut Mistakes) -> Option<Contact> {
     let object = input.object(&CONTACT, mistakes)?;
-    let surface = object.optional("surface", mistakes, text);
-    let node = match (input.has("surface"), input.has("node")) {
-        (true, true) => input.note("`node` and `surface` are given; one of the two is expected", mistakes),
-        (true, false) => Some(String::new()),
-        (false, _) => object.required("node", mistakes, text),
+    let surface = object.optional("surface", mistakes, text)?;
+    let node = match &surface {
+        Some(_) => object.with_default("node", String::new(), mistakes, text),
+        None => object.required("node", mistakes, text),
     };
+    if surface.is_some() && node.as_deref().is_some_and(|node| !node.is_empty()) {
+        return input.note("`node` and `surface` are given; one of the two is expected", mistakes);
+    }
     let obstacle = object.required("obstacle", mistakes, text);
     let friction = object.with_default("friction", 0.0, mistakes, number);
-    Some(Contact { node: node?, surface: surface?, obstacle: obstacle?, friction: friction? })
+    Some(Contact { node: node?, surface, obstacle: obstacle?, friction: friction? })
 }
 
 fn stage(input: &Input, mistakes: &mut Mistakes) -> Option<Stage> {

@@ -6,7 +6,8 @@ use crate::model::input::limits::{MAX_CONTACTS, MAX_NAMED_NODES, MAX_NODES};
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{quoted, suggestion};
 use crate::model::request::{
-    Analysis, Contact, Element, Model, NamedSet, Record, RecordedContacts, RecordedSupports, Surface,
+    Analysis, Contact, Element, ElementReference, Model, NamedSet, Record, RecordedContacts, RecordedElements,
+    RecordedSupports, Surface,
 };
 use indexmap::{IndexMap, IndexSet};
 use std::cell::{Cell, OnceCell, RefCell};
@@ -66,6 +67,9 @@ fn recorded(groups: &Groups<'_>, record: &mut Record, mistakes: &mut Mistakes) {
     if let Some(RecordedSupports::Named(nodes)) = &mut record.supports {
         listed(nodes, &at.member("supports"), mistakes);
     }
+    if let Some(RecordedElements::Listed(listed)) = &mut record.elements {
+        *listed = groups.elements(std::mem::take(listed), &at.member("elements"), mistakes);
+    }
     if let Some(RecordedContacts::Named(contacts)) = &mut record.contacts {
         let at = at.member("contacts");
         let mut all = Vec::new();
@@ -100,7 +104,15 @@ fn uses_sets(model: &Model, analysis: &Analysis) -> bool {
             _ => &[],
         };
         let contacts = record.named_contacts().unwrap_or_default().iter().map(|contact| &contact.node);
-        record.nodes.iter().flatten().chain(supports).chain(contacts)
+        let elements = match &record.elements {
+            Some(RecordedElements::Listed(listed)) => listed.as_slice(),
+            _ => &[],
+        };
+        let elements = elements.iter().filter_map(|element| match element {
+            ElementReference::Name(name) => Some(name),
+            ElementReference::Place(_) => None,
+        });
+        record.nodes.iter().flatten().chain(supports).chain(contacts).chain(elements)
     });
     let of_contacts = model.contacts.iter().map(|contact| &contact.node);
     if model.contacts.iter().any(|contact| contact.surface.is_some()) {
@@ -203,6 +215,40 @@ impl<'a> Groups<'a> {
                 Members::Mistaken
             }
         }
+    }
+
+    /// Elements by name or place, those of sets in place of `@name`, each once.
+    fn elements(
+        &self,
+        given: Vec<ElementReference>,
+        at: &DocumentPlace,
+        mistakes: &mut Mistakes,
+    ) -> Vec<ElementReference> {
+        let mut all = Vec::with_capacity(given.len());
+        let mut known: IndexSet<&String> = IndexSet::new();
+        for (index, reference) in given.into_iter().enumerate() {
+            let set = match &reference {
+                ElementReference::Name(name) => name.strip_prefix('@').map(str::to_owned),
+                ElementReference::Place(_) => None,
+            };
+            let Some(set) = set else {
+                all.push(reference);
+                continue;
+            };
+            let elements = self.sets.get(&set).map(|set| &set.elements).filter(|elements| !elements.is_empty());
+            let Some(elements) = elements.filter(|elements| elements.len() <= self.left.get()) else {
+                mistakes.add(&at.index(index), || {
+                    let with_elements = self.sets.iter().filter(|(_, set)| !set.elements.is_empty());
+                    let hint = suggestion(&set, with_elements.map(|(name, _)| name.as_str()));
+                    format!("there is no set of elements {}{hint}", quoted(&set))
+                });
+                continue;
+            };
+            self.left.set(self.left.get() - elements.len());
+            let fresh = elements.iter().filter(|name| known.insert(*name));
+            all.extend(fresh.map(|name| ElementReference::Name(name.clone())));
+        }
+        all
     }
 
     /// A map by nodes; `merge` unites a second value of a node with the first, and returns whether it could.

@@ -112,16 +112,16 @@ fn density(object: &Object, mistakes: &mut Mistakes) -> Option<Option<f64>> {
 
 pub(super) fn surface(input: &Input, mistakes: &mut Mistakes) -> Option<Surface> {
     let object = input.object(&SURFACE, mistakes)?;
-    if input.has("group") {
-        let group = object.required("group", mistakes, text)?;
-        return if input.has("faces") {
-            input.note("`faces` and `group` are given; one of the two is expected", mistakes)
-        } else {
-            Some(Surface { faces: Vec::new(), group: Some(group) })
-        };
+    let group = object.optional("group", mistakes, text)?;
+    let lists = |input: &Input, mistakes: &mut Mistakes| input.list(mistakes, strings);
+    let faces = match &group {
+        Some(_) => object.with_default("faces", Vec::new(), mistakes, lists)?,
+        None => object.required("faces", mistakes, lists)?,
+    };
+    if group.is_some() && !faces.is_empty() {
+        return input.note("`faces` and `group` are given; one of the two is expected", mistakes);
     }
-    let faces = object.required("faces", mistakes, |input, mistakes| input.list(mistakes, strings))?;
-    Some(Surface { faces, group: None })
+    Some(Surface { faces, group })
 }
 
 pub(super) fn set(input: &Input, mistakes: &mut Mistakes) -> Option<NamedSet> {

@@ -12,9 +12,12 @@ pub mod gmsh;
 
 use data::error::{MeshError, MeshPlace, quoted};
 use data::mesh_data::MeshData;
+use serde::{Deserialize, Serialize};
 
 /// A format of mesh files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
 pub enum MeshFormat {
     /// gmsh's, versions 2.2 and 4.1.
     Gmsh,

@@ -27,7 +27,8 @@ pub use record::{
 };
 pub use structure::{
     BendingStiffness, Component, Contact, ContentEncoding, DisplacementBound, ElasticConstants, Element, Material,
-    Mesh, MeshFormat, MeshGroup, Model, NamedSet, Obstacle, PlaneCondition, Side, Solid, Stage, Surface, Units, Until,
+    MeshFile, MeshFormat, MeshGroup, Model, NamedSet, Obstacle, PlaneCondition, Side, Solid, Stage, Surface, Units,
+    Until,
 };
 
 /// A model and how to trace it.

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import base64
 import copy
 import json
 import numbers
+import pathlib
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Union
 
 #: Anything that holds numbers in order: a list, a tuple, an array of numpy.
@@ -40,6 +42,10 @@ class Model:
         self._nodes: Dict[str, List[float]] = {}
         self._names: List[str] = []
         self._supports: Dict[str, List[str]] = {}
+        self._mesh: Optional[Dict[str, str]] = None
+        self._materials: Dict[str, Dict[str, Any]] = {}
+        self._surfaces: Dict[str, Dict[str, Any]] = {}
+        self._sets: Dict[str, Dict[str, Any]] = {}
         self._elements: List[Dict[str, Any]] = []
         self._obstacles: Dict[str, Dict[str, Any]] = {}
         self._contacts: List[Dict[str, Any]] = []
@@ -139,6 +145,59 @@ class Model:
         own = {"axial_stiffness": axial_stiffness, "bending_stiffness": bending_stiffness, **more}
         return self._element({"kind": "beam", "nodes": named, **plain(own)})
 
+    # Solids -----------------------------------------------------------------------------------------------------------
+
+    def material(self, name: str, kind: str, **constants: float) -> str:
+        """Adds a material of solids: `"linear_elastic"`, `"saint_venant_kirchhoff"` or `"neo_hookean"` with `young` and
+        `poisson`, or `"mooney_rivlin"` with `c10`, `c01` and `bulk_modulus`."""
+        if name in self._materials:
+            raise ValueError(f"there is a material {name!r} already")
+        self._materials[name] = {"kind": kind, **plain(constants)}
+        return name
+
+    def solid(self, kind: str, nodes: Sequence[Node], material: str, **more: Any) -> int:
+        """Adds a solid such as `"quadrilateral4"` through nodes in the order of VTK; returns its place among the elements.
+
+        `more`: in the plane `plane` (`"strain"`, `"stress"`, `"axisymmetric"`) and `thickness`; `locking`, `name`.
+        """
+        named = [self.node_name(node) for node in plain(nodes)]
+        return self._element({"kind": kind, "nodes": named, "material": material, **plain(more)})
+
+    def solids(self, kind: str, rows: Iterable[Sequence[Node]], material: str, **more: Any) -> List[int]:
+        """Adds solids of one kind from a row of nodes for each, by name or by place."""
+        return [self.solid(kind, row, material, **more) for row in rows]
+
+    def mesh(self, file: Union[str, "pathlib.Path"], format: Optional[str] = None) -> None:
+        """Takes a mesh file of gmsh or a deck of Abaqus into the request; `group` makes solids of its elements. Its sets
+        and surfaces have their names there: `model.support("@foot", "y")`."""
+        bytes_of_file = pathlib.Path(file).read_bytes()
+        self._mesh = {} if format is None else {"format": format}
+        try:
+            self._mesh["content"] = bytes_of_file.decode("utf-8")
+        except UnicodeDecodeError:
+            self._mesh.update(content=base64.b64encode(bytes_of_file).decode("ascii"), encoding="base64")
+
+    def group(self, group: Optional[str] = None, material: Optional[str] = None, **more: Any) -> None:
+        """Makes solids of the elements of a group of the mesh, or of all of them; `more` as in `solid`. What is left out
+        is what the file says."""
+        own = {name: value for name, value in (("group", group), ("material", material)) if value is not None}
+        self._elements.append({"kind": "solid", **own, **plain(more)})
+
+    def surface(self, name: str, faces: Optional[Iterable[Sequence[Node]]] = None, group: Optional[str] = None) -> str:
+        """Names faces of solids, each by its nodes, or a group of faces of the mesh."""
+        if (faces is None) == (group is None):
+            raise ValueError(f"surface {name!r}: either faces or a group of the mesh is expected")
+        if faces is None:
+            self._surfaces[name] = {"group": group}
+        else:
+            self._surfaces[name] = {"faces": [[self.node_name(node) for node in plain(face)] for face in plain(faces)]}
+        return name
+
+    def node_set(self, name: str, nodes: Iterable[Node]) -> str:
+        """Names nodes: `"@name"` stands for them."""
+        self._sets[name] = {"nodes": [self.node_name(node) for node in plain(nodes)]}
+        return name
+
     def _element(self, element: Dict[str, Any]) -> int:
         self._elements.append(element)
         return len(self._elements) - 1
@@ -159,9 +218,17 @@ class Model:
         self._obstacles[name] = obstacle
         return name
 
-    def contact(self, node: Node, obstacle: str, friction: float = 0.0) -> int:
-        """Adds a contact of a node with an obstacle; returns its place among the contacts."""
-        contact = {"node": self.node_name(node), "obstacle": obstacle, "friction": plain(friction)}
+    def contact(
+        self, node: Optional[Node] = None, obstacle: str = "", friction: float = 0.0, *, surface: Optional[str] = None
+    ) -> int:
+        """Adds a contact of a node, of the nodes of a set (`"@name"`), or of a surface with an obstacle; returns its
+        place among the contacts."""
+        if node is not None and surface is not None:
+            raise ValueError("a contact has either a node or a surface")
+        if not obstacle:
+            raise ValueError("the name of an obstacle is missing")
+        own = {"node": self.node_name(node)} if surface is None else {"surface": surface}  # type: ignore[arg-type]
+        contact = {**own, "obstacle": obstacle, "friction": plain(friction)}
         self._contacts.append(contact)
         return len(self._contacts) - 1
 
@@ -175,8 +242,11 @@ class Model:
         obstacle_motion: Optional[Mapping[str, Vector]] = None,
         until: Optional[Mapping[str, Any]] = None,
         moments: Optional[Mapping[Node, float]] = None,
+        body_forces: Optional[Mapping[str, Vector]] = None,
+        tractions: Optional[Mapping[str, Vector]] = None,
+        pressures: Optional[Mapping[str, float]] = None,
     ) -> str:
-        """Adds a stage. Its pattern is multiplied by the load factor, which begins at 0; `until` says where it ends,
+        """Adds a stage: loads by node, `body_forces` by material, `tractions` and `pressures` by surface. Its pattern is multiplied by the load factor, which begins at 0; `until` says where it ends,
         such as `{"load_above": 1}` or `{"displacement": {"node": "tip", "component": "y", "below": -0.2}}`."""
         stage: Dict[str, Any] = {"name": name}
         for key, pattern in (("forces", forces), ("displacements", displacements)):
@@ -186,8 +256,10 @@ class Model:
                 stage[key] = {self.node_name(node): plain(vector) for node, vector in pattern.items()}
         if moments is not None:
             stage["moments"] = {self.node_name(node): plain(moment) for node, moment in moments.items()}
-        if obstacle_motion is not None:
-            stage["obstacle_motion"] = plain(obstacle_motion)
+        on_solids = (("body_forces", body_forces), ("tractions", tractions), ("pressures", pressures))
+        for key, pattern_of_names in (*on_solids, ("obstacle_motion", obstacle_motion)):
+            if pattern_of_names is not None:
+                stage[key] = plain(pattern_of_names)
         if until is not None:
             stage["until"] = self._with_names(plain(until), ("displacement", "node"))
         self._stages.append(stage)
@@ -202,7 +274,10 @@ class Model:
             if value is not None:
                 model[key] = value
         model.update(nodes=self._nodes, elements=self._elements, stages=self._stages)
-        for key, members in (("supports", self._supports), ("obstacles", self._obstacles), ("contacts", self._contacts)):
+        for key, members in (
+            ("mesh", self._mesh), ("materials", self._materials), ("surfaces", self._surfaces), ("sets", self._sets),
+            ("supports", self._supports), ("obstacles", self._obstacles), ("contacts", self._contacts),
+        ):
             if members:
                 model[key] = members
         request: Dict[str, Any] = {"model": copy.deepcopy(model)}
@@ -233,17 +308,28 @@ class Model:
     def from_meshio(
         cls,
         mesh: Any,
-        axial_stiffness: Union[float, Vector, str],
+        axial_stiffness: Union[float, Vector, str, None] = None,
         dimension: Optional[int] = None,
         prefix: str = "n",
         ignore_others: bool = False,
+        *,
+        material: Optional[str] = None,
+        **more: Any,
     ) -> "Model":
-        """A truss of the lines of a mesh of meshio: a node for each point, and a bar for each cell `line`.
+        """A truss of the lines of a mesh of meshio, or with `material` solids of its triangles, quadrilaterals, tetrahedra
+        and hexahedra, whichever have the largest dimension; a node for each point.
 
         `axial_stiffness` is one number, one for each line, or the name of the mesh's cell data. Without `dimension`
         points that all lie in the plane z = 0 give a model in the plane. Cells of other kinds are refused, unless they
-        are to be ignored.
+        are to be ignored. Of solids `more` is what `solid` takes, such as `plane="strain"`; named sets of points and
+        cells, gmsh's physical groups among them, become sets and surfaces, and points of no cell are left out.
         """
+        if material is not None and axial_stiffness is None:
+            return _solids_of(cls, mesh, dimension, prefix, material, more)
+        if material is not None or axial_stiffness is None:
+            raise ValueError("either an axial stiffness, of bars, or a material, of solids, is expected")
+        if more:
+            raise TypeError(f"bars of a mesh have no {sorted(more)[0]!r}")
         points = [list(map(float, row)) for row in plain(mesh.points)]
         if dimension is None:
             dimension = 3 if any(len(row) > 2 and row[2] != 0.0 for row in points) else 2
@@ -266,6 +352,74 @@ class Model:
     def __repr__(self) -> str:
         counts = f"{len(self._nodes)} nodes, {len(self._elements)} elements, {len(self._contacts)} contacts"
         return f"<Model in {self.dimension}D: {counts}, stages {[stage['name'] for stage in self._stages]}>"
+
+
+#: Kinds of solids and the dimension of each, by the names of meshio.
+SOLIDS = {
+    "triangle": ("triangle3", 2), "triangle6": ("triangle6", 2), "quad": ("quadrilateral4", 2),
+    "quad8": ("quadrilateral8", 2), "tetra": ("tetrahedron4", 3), "tetra10": ("tetrahedron10", 3),
+    "hexahedron": ("hexahedron8", 3), "hexahedron20": ("hexahedron20", 3),
+}
+
+
+def _groups(mesh: Any) -> Dict[str, List[List[int]]]:
+    """Named groups of cells: for each the places of its cells within each block of the mesh."""
+    groups = {
+        name: [[int(place) for place in plain(own)] if own is not None else [] for own in members]
+        for name, members in mesh.cell_sets.items()
+        if not name.startswith("gmsh:")
+    }
+    tags = mesh.cell_data.get("gmsh:physical")
+    if tags is not None:
+        own_dimension = {"vertex": 0, "line": 1, "line3": 1, **{kind: number for kind, (_, number) in SOLIDS.items()}}
+        for name, (tag, dimension) in ((name, plain(data)) for name, data in mesh.field_data.items()):
+            groups.setdefault(name, [
+                [place for place, own in enumerate(plain(values)) if own == tag]
+                if own_dimension.get(block.type) == dimension else []
+                for block, values in zip(mesh.cells, tags)
+            ])
+    return groups
+
+
+def _solids_of(
+    cls: Any, mesh: Any, dimension: Optional[int], prefix: str, material: str, more: Mapping[str, Any]
+) -> "Model":
+    highest = max((SOLIDS[block.type][1] for block in mesh.cells if block.type in SOLIDS), default=0)
+    if highest == 0:
+        raise ValueError("the mesh has no triangles, quadrilaterals, tetrahedra or hexahedra")
+    if dimension not in (None, highest):
+        raise ValueError(f"the mesh has solids of {highest} dimensions, not {dimension}")
+    cells = [plain(block.data) for block in mesh.cells]
+    is_solid = [block.type in SOLIDS and SOLIDS[block.type][1] == highest for block in mesh.cells]
+    used = {node for rows, solid in zip(cells, is_solid) if solid for row in rows for node in row}
+    model: Model = cls(highest)
+    names = {}
+    for place, row in enumerate(plain(mesh.points)):
+        if place in used:
+            names[place] = model.node(f"{prefix}{place}", (list(map(float, row)) + [0.0] * 3)[:highest])
+    places: Dict[Any, str] = {}
+    for number, (block, rows, solid) in enumerate(zip(mesh.cells, cells, is_solid)):
+        for place, row in enumerate(rows if solid else []):
+            name = f"e{len(places)}"
+            places[number, place] = name
+            model.solid(SOLIDS[block.type][0], [names[node] for node in row], material, name=name, **more)
+    faces_of_solids = {2: ("line", "line3"), 3: ("triangle", "triangle6", "quad", "quad8")}[highest]
+    for name, members in _groups(mesh).items():
+        chosen = [(number, place) for number, own in enumerate(members) for place in own]
+        faces = [
+            cells[number][place] for number, place in chosen
+            if mesh.cells[number].type in faces_of_solids and all(node in used for node in cells[number][place])
+        ]
+        solids = [places[at] for at in chosen if at in places]
+        if faces:
+            model.surface(name, [[names[node] for node in face] for face in faces])
+        elif solids:
+            model._sets[name] = {"elements": solids}
+    for name, points in mesh.point_sets.items():
+        own = [names[int(node)] for node in plain(points) if int(node) in used]
+        if own and name not in model._surfaces and name not in model._sets:
+            model.node_set(name, own)
+    return model
 
 
 def is_number(value: Any) -> bool:

@@ -6,11 +6,13 @@ import difflib
 import json
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union, overload
 
-from arcslip.model import Model, as_request
+from arcslip.model import SOLIDS, Model, as_request
 
 Increment = Dict[str, Any]
 
 AXES = "xyz"
+#: Names of solids' cells in meshio by their kinds.
+CELLS = {kind: name for name, (kind, _) in SOLIDS.items()}
 
 
 class Path:
@@ -103,6 +105,10 @@ class Path:
                         row[f"{own}.{end}.{name}"] = value
             if "moment" in element:
                 row[f"{own}.moment"] = element["moment"]
+            if "stress" in element:
+                components = ("xx", "yy", "zz", "xy", "yz", "xz")
+                row.update((f"{own}.stress.{at}", value) for at, value in zip(components, element["stress"]))
+                row[f"{own}.von_mises"] = element["von_mises"]
         for node, vector in (increment.get("supports") or {}).items():
             row.update(zip((f"{node}.reaction.{axis}" for axis in with_rotation), vector))
         row.update(zip((f"applied_force_{axis}" for axis in axes), increment.get("applied_forces") or []))
@@ -193,12 +199,15 @@ class Path:
 
     def to_meshio(self, place: int = -1) -> Any:
         """The structure at an increment, by its place in the path, as a mesh of meshio: points where the nodes were,
-        their displacements as point data, axial forces of bars, and of beams the mean of their ends, as cell data."""
+        their displacements as point data, axial forces of bars, of beams the mean of their ends, and von Mises' stresses of
+        solids as cell data."""
         import meshio
 
         if not self.increments:
             raise ValueError("the path has no increments")
         increment, model = self.increments[place], self.request["model"]
+        if "mesh" in model:
+            raise ValueError("the nodes of the request are those of a mesh file; `arcslip solve --out path.pvd` writes them")
         nodes = list(model["nodes"])
 
         def in_space(vector: Sequence[float]) -> List[float]:
@@ -212,27 +221,32 @@ class Path:
         ]
         numbers = {node: number for number, node in enumerate(nodes)}
         states = {state["element"]: state for state in increment.get("elements") or []}
-        by_kind: Dict[str, Tuple[List[List[int]], List[float]]] = {"line": ([], []), "line3": ([], []), "vertex": ([], [])}
+        by_kind: Dict[str, Tuple[List[List[int]], List[float], List[float]]] = {}
         for place_of_element, element in enumerate(model["elements"]):
             joined = [numbers[node] for node in element["nodes"]]
             state = states.get(place_of_element, {})
             ends = state.get("ends")
             force = sum(end["axial_force"] for end in ends) / 2 if ends else state.get("axial_force", float("nan"))
-            if len(joined) == 3:
-                # The node in the middle comes last.
-                joined = [joined[0], joined[2], joined[1]]
-            own, forces = by_kind[{1: "vertex", 2: "line", 3: "line3"}[len(joined)]]
+            kind = CELLS.get(element["kind"])
+            if kind is None:
+                kind = {1: "vertex", 2: "line", 3: "line3"}[len(joined)]
+                if kind == "line3":
+                    # The node in the middle comes last.
+                    joined = [joined[0], joined[2], joined[1]]
+            own, forces, stresses = by_kind.setdefault(kind, ([], [], []))
             own.append(joined)
             forces.append(force)
-        cells = [(kind, own) for kind, (own, _) in by_kind.items() if own]
-        data = [forces for own, forces in by_kind.values() if own]
+            stresses.append(state.get("von_mises", float("nan")))
         import numpy
 
+        cell_data = {"axial_force": [numpy.array(forces) for _, forces, _ in by_kind.values()]}
+        if any(kind in CELLS.values() for kind in by_kind):
+            cell_data["von_mises"] = [numpy.array(stresses) for _, _, stresses in by_kind.values()]
         return meshio.Mesh(
             numpy.array(points),
-            [(kind, numpy.array(own)) for kind, own in cells],
+            [(kind, numpy.array(own)) for kind, (own, _, _) in by_kind.items()],
             point_data={"displacement": numpy.array(displacement)},
-            cell_data={"axial_force": [numpy.array(own) for own in data]},
+            cell_data=cell_data,
         )
 
     def __repr__(self) -> str:

@@ -6,7 +6,7 @@ use crate::check::measure::solids::{PlacedSolid, PlaneOf, jacobian, padded, shap
 use crate::model::request::{Element, Model, SolidKind, Stage};
 use crate::model::solids::faces::{FaceMatch, SolidFace, surface_faces};
 use nalgebra::Vector3;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Gauss's rule of four points on `[-1, 1]`.
 const LINE: [(f64, f64); 4] = [
@@ -116,8 +116,9 @@ impl MeasuredFace {
 
 /// For each surface that some stage presses, its name and its faces, in the order of the surfaces.
 pub fn pressed_surfaces(model: &Model) -> Vec<(&str, Vec<MeasuredFace>)> {
-    let is_pressed = |name: &str| model.stages.iter().any(|stage| stage.pressures.contains_key(name));
-    if !model.surfaces.keys().any(|name| is_pressed(name)) {
+    let named: HashSet<&str> =
+        model.stages.iter().flat_map(|stage| stage.pressures.keys()).map(String::as_str).collect();
+    if named.is_empty() {
         return Vec::new();
     }
     let faces = |faces: Vec<FaceMatch>| {
@@ -125,7 +126,7 @@ pub fn pressed_surfaces(model: &Model) -> Vec<(&str, Vec<MeasuredFace>)> {
             |face: &FaceMatch| if let FaceMatch::Face(face) = face { MeasuredFace::new(model, face) } else { None };
         faces.iter().filter_map(one).collect()
     };
-    let all = model.surfaces.keys().zip(surface_faces(model)).filter(|(name, _)| is_pressed(name));
+    let all = model.surfaces.keys().zip(surface_faces(model)).filter(|(name, _)| named.contains(name.as_str()));
     all.map(|(name, own)| (name.as_str(), faces(own))).collect()
 }
 

@@ -1,6 +1,7 @@
 //! A mesh within a request, and the solids made of its elements.
 
 use crate::mechanics::structure::elements::solid::shapes::kind::LockingMend;
+use crate::model::mesh::MeshFormat;
 use crate::model::request::structure::solid::PlaneCondition;
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +10,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
-pub struct Mesh {
+pub struct MeshFile {
     /// Absent: as the first letter of the file tells.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub format: Option<MeshFormat>,
@@ -22,17 +23,6 @@ pub struct Mesh {
     /// Path of the file relative to the request, in place of `content`; on the command line alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
-}
-
-/// A format of mesh files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum MeshFormat {
-    /// gmsh's, versions 2.2 and 4.1.
-    Gmsh,
-    /// Decks of Abaqus and its kin.
-    Abaqus,
 }
 
 /// How the bytes of a file are written.

@@ -15,10 +15,11 @@ mod solid;
 mod stage;
 mod surface;
 
+pub use crate::model::mesh::MeshFormat;
 pub use component::Component;
 pub use element::{BendingStiffness, Element};
 pub use material::{ElasticConstants, Material};
-pub use mesh::{ContentEncoding, Mesh, MeshFormat, MeshGroup};
+pub use mesh::{ContentEncoding, MeshFile, MeshGroup};
 pub use model::{Model, Units};
 pub use obstacle::{Contact, Obstacle, Side};
 pub use solid::{PlaneCondition, Solid};

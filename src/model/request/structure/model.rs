@@ -3,7 +3,7 @@
 use crate::model::request::structure::component::Component;
 use crate::model::request::structure::element::Element;
 use crate::model::request::structure::material::Material;
-use crate::model::request::structure::mesh::Mesh;
+use crate::model::request::structure::mesh::MeshFile;
 use crate::model::request::structure::obstacle::{Contact, Obstacle};
 use crate::model::request::structure::stage::Stage;
 use crate::model::request::structure::surface::{NamedSet, Surface};
@@ -26,7 +26,7 @@ pub struct Model {
     pub dimension: usize,
     /// A mesh file, whose parts join those given here.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mesh: Option<Mesh>,
+    pub mesh: Option<MeshFile>,
     /// Node name to coordinates (length, `dimension` of them).
     #[serde(default)]
     pub nodes: IndexMap<String, Vec<f64>>,

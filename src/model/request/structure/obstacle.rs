@@ -65,7 +65,7 @@ pub enum Side {
 #[serde(deny_unknown_fields)]
 pub struct Contact {
     /// Name of the node; `@` and a name: the nodes of a set or surface. Absent where `surface` is given.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[serde(default)]
     pub node: String,
     /// Name of a surface, whose nodes touch, in place of `node`.
     #[serde(default, skip_serializing_if = "Option::is_none")]

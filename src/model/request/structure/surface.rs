@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct Surface {
     /// The nodes of each face, in the order of VTK's file format: corners, then the middles of edges. Each is a face of one
     /// solid element, in either orientation.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub faces: Vec<Vec<String>>,
     /// Name of a group of faces of the mesh, in place of `faces`.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -57,11 +57,12 @@ export function drawableModel(text) {
   const given = request?.model;
   if (!isObject(given)) return nothing("There is no “model” in the text");
   if (given.dimension !== 2 && given.dimension !== 3) return nothing("The model's “dimension” has to be 2 or 3");
+  if (isObject(given.mesh)) return nothing("The picture of a model with a mesh is drawn when the job runs");
   const reading = new Reading(given.dimension);
   const nodes = reading.keep(given.nodes, "The node", (place) => reading.vectorOr(place));
   if (Object.keys(nodes).length === 0) return nothing(...bounded(reading.problems), "There is no node that can be drawn");
   const units = isObject(given.units) ? given.units : {};
-  const model = { ...parts(reading, given, nodes), dimension: given.dimension, nodes, units };
+  const model = { ...parts(reading, expanded(given), nodes), dimension: given.dimension, nodes, units };
   return { model, problems: bounded(reading.problems) };
 }
 
@@ -70,6 +71,29 @@ const nothing = (...problems) => ({ model: null, problems });
 function bounded(problems) {
   const more = problems.length - SENTENCES;
   return more > 0 ? [...problems.slice(0, SENTENCES), `and ${more} more like these`] : problems;
+}
+
+/** The nodes of a set or a surface, and of `@name`; a name as it is where it stands for nothing else. */
+function membersOfName(given, name) {
+  if (typeof name !== "string" || !name.startsWith("@")) return [name];
+  const set = given.sets?.[name.slice(1)];
+  const named = new Set(listOf(set?.elements));
+  const ofElements = listOf(given.elements).filter((item) => named.has(item?.name)).flatMap((item) => listOf(item.nodes));
+  const found = [listOf(set?.nodes), listOf(given.surfaces?.[name.slice(1)]?.faces).flat(), ofElements]
+    .find((nodes) => nodes.length > 0);
+  return found ? [...new Set(found)] : [name];
+}
+
+/** The model with nodes in place of the names of sets and surfaces. */
+function expanded(given) {
+  const byNode = (pattern) => Object.fromEntries(membersOf(pattern).flatMap(([name, value]) =>
+    membersOfName(given, name).map((node) => [node, value])));
+  const stageOfNodes = (stage) => (isObject(stage) ? { ...stage, forces: byNode(stage.forces), moments: byNode(stage.moments),
+    displacements: byNode(stage.displacements) } : stage);
+  const contactsOf = (item) => membersOfName(given, item?.surface === undefined ? item?.node : `@${item.surface}`)
+    .map((node) => ({ ...item, node }));
+  return { ...given, supports: byNode(given.supports), contacts: listOf(given.contacts).flatMap(contactsOf),
+    stages: listOf(given.stages).map(stageOfNodes) };
 }
 
 function parts(reading, given, nodes) {

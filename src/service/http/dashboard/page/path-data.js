@@ -42,7 +42,7 @@ export class PathData {
   async load(abscissa, ordinates) {
     const place = `/v1/jobs/${this.id}`;
     const { signal } = this.given;
-    [this.job, this.request] = await Promise.all([get(place, signal), get(`${place}/request`, signal)]);
+    [this.job, this.request] = await Promise.all([get(place, signal), get(`${place}/request?expanded=true`, signal)]);
     const isKnown = abscissa !== null && this.knows(abscissa);
     const known = ordinates.filter((name) => this.knows(name));
     for (const name of [...ALWAYS, ...known, isKnown ? abscissa : this.ownAbscissa()]) this.columns.set(name, []);
