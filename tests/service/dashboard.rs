@@ -147,7 +147,7 @@ async fn a_mesh_is_posted_within_the_request() {
     let mut by_file = request.clone();
     by_file["model"]["mesh"] = serde_json::json!({"file": "/etc/hostname"});
     let refused = server.post("/v1/jobs", &by_file).await;
-    assert_eq!(refused.status(), StatusCode::BAD_REQUEST);
+    assert_eq!(refused.status(), StatusCode::UNPROCESSABLE_ENTITY);
     let text = refused.text().await.expect("a problem");
     assert!(text.contains("files are opened by the command line alone"), "{text}");
 }

@@ -325,7 +325,7 @@ fn every_mistake_is_listed_with_its_place() {
         errors.0[4].detail,
         "`bra` is not a kind of element; did you mean `bar`? Known: `bar`, `spring`, `beam`, `rotational_spring`, \
          `triangle3`, `triangle6`, `quadrilateral4`, `quadrilateral8`, `tetrahedron4`, `tetrahedron10`, `hexahedron8`, \
-         `hexahedron20`"
+         `hexahedron20` and 1 more"
     );
 }
 

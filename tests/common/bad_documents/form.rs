@@ -89,7 +89,7 @@ pub fn wrong_form() -> Vec<BadDocument> {
             "/model/elements/0/kind",
             json!(7),
             "a kind of element (`bar`, `spring`, `beam`, `rotational_spring`, `triangle3`, `triangle6`, `quadrilateral4`, \
-             `quadrilateral8`, `tetrahedron4`, `tetrahedron10`, `hexahedron8`, `hexahedron20`) is expected",
+             `quadrilateral8`, `tetrahedron4`, `tetrahedron10`, `hexahedron8`, `hexahedron20` and 1 more) is expected",
         ),
         at("fractional count", "/analysis/max_increments", json!(1.5), "found the number `1.5`; a whole number"),
         at("negative count", "/analysis/max_increments", json!(-1), "found the number `-1`; a whole number"),

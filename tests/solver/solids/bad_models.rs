@@ -83,7 +83,10 @@ fn mistakes_in_surfaces_and_loads_are_told() {
     is_told("/model/stages/0/body_forces/steel", "no material", |model| {
         model["stages"][0]["body_forces"] = json!({"steel": [0, 1]});
     });
-    is_told("/model/stages/0/pressures", "not available", |model| model["stages"][0]["pressures"] = json!({"top": 1}));
+    is_told("/model/stages/0/pressures/tip", "no surface", |model| model["stages"][0]["pressures"] = json!({"tip": 1}));
+    is_told("/model/stages/0/pressures/top", "a number is expected", |model| {
+        model["stages"][0]["pressures"] = json!({"top": [0, 1]});
+    });
     is_told("/model/stages/0", "no load", |model| model["stages"][0]["tractions"] = json!({"top": [0, 0]}));
 }
 
