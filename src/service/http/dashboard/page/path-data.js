@@ -15,6 +15,11 @@ const HELD = 500000;
 const FEWEST_HELD = 256;
 const ALWAYS = ["stage", "load_factor", "arc_length"];
 
+/** Whether a model has a mesh, or names of sets and surfaces where nodes are drawn. */
+const namesParts = (model) => Boolean(model.mesh)
+  || Object.keys(model.supports ?? {}).some((name) => name.startsWith("@"))
+  || (model.contacts ?? []).some(({ node, surface }) => surface || node?.startsWith("@"));
+
 export class PathData {
   constructor(id) {
     this.id = id;
@@ -42,7 +47,13 @@ export class PathData {
   async load(abscissa, ordinates) {
     const place = `/v1/jobs/${this.id}`;
     const { signal } = this.given;
-    [this.job, this.request] = await Promise.all([get(place, signal), get(`${place}/request?expanded=true`, signal)]);
+    const [job, request] = await Promise.all([get(place, signal), get(`${place}/request`, signal)]);
+    this.job = job;
+    this.request = request;
+    if (namesParts(request.model)) {
+      const { model } = await get(`${place}/request?expanded=true`, signal);
+      this.request = { ...request, model };
+    }
     const isKnown = abscissa !== null && this.knows(abscissa);
     const known = ordinates.filter((name) => this.knows(name));
     for (const name of [...ALWAYS, ...known, isKnown ? abscissa : this.ownAbscissa()]) this.columns.set(name, []);
