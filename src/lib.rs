@@ -141,7 +141,7 @@ pub use check::judged::{JudgedCheckpointError, JudgedIncrement, JudgedReport, Me
 pub use check::measure::{Errors, HistoryError, Largest, Maxima};
 pub use continuation::path::checkpoint::CheckpointError;
 pub use mechanics::structure::elements::bar::Strain;
-pub use model::decode::expand_sets;
+pub use model::decode::expanded;
 pub use model::request::{
     Analysis, ArcLength, Certificate, Component, Contact, ContactRange, ContentEncoding, DisplacementBound,
     ElasticConstants, Element, ElementReference, Events, Explore, ForceRange, JobRequest, LoadSign, LockingMend,

@@ -1,6 +1,7 @@
 //! Meshes within requests.
 
 use crate::samples::{all, mesh};
+use arcslip::model::JobRequest;
 use arcslip::model::decode::decode;
 use arcslip::model::mesh::convert::ConvertedModel;
 use base64::Engine;
@@ -106,6 +107,18 @@ fn groups_sets_and_surfaces_of_the_mesh_are_those_of_the_model() {
     assert!(refused.contains("analysis.record.elements[0]: there is no set of elements `foot`"), "{refused}");
     assert!(model.get("mesh").is_none() && model["contacts"][0].get("surface").is_none());
     arcslip::read(two_groups().to_string().as_bytes()).expect("a sound model");
+}
+
+/// A model in code is expanded where its user asks for it, and refused where it is not.
+#[test]
+fn a_model_in_code_is_expanded_on_demand() {
+    let request: JobRequest = serde_json::from_value(two_groups()).expect("a request");
+    let refused = arcslip::model::check::check(&request).expect_err("names").to_string();
+    for place in ["model.mesh", "model.surfaces.lid.group", "model.contacts[0].surface", "model.elements[0]"] {
+        assert!(refused.contains(&format!("{place}: this names a part of a mesh")), "{place} in {refused}");
+    }
+    let expanded = arcslip::expanded(request).expect("parts");
+    assert_eq!(serde_json::to_value(expanded.model).expect("JSON"), decoded(&two_groups()).expect("a model"));
 }
 
 #[test]

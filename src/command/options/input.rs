@@ -30,12 +30,10 @@ impl Model {
         if self.file == "-" {
             let mut text = Vec::new();
             std::io::stdin().read_to_end(&mut text).map_err(unreadable)?;
-            return Ok(text);
+            return with_mesh(text, Path::new(""));
         }
         match std::fs::read(&self.file) {
-            Ok(text) => {
-                embedded_mesh::embed(text, Path::new(&self.file)).map_err(|detail| Failure::Input(vec![detail]))
-            }
+            Ok(text) => with_mesh(text, Path::new(&self.file)),
             Err(error) if error.kind() == ErrorKind::NotFound => match scenes::find(&self.file) {
                 Some(scene) => Ok(scene.request.as_bytes().to_vec()),
                 None => Err(Failure::Input(vec![format!(
@@ -46,6 +44,10 @@ impl Model {
             Err(error) => Err(unreadable(error)),
         }
     }
+}
+
+fn with_mesh(text: Vec<u8>, request: &Path) -> Result<Vec<u8>, Failure> {
+    embedded_mesh::embed(text, request).map_err(|detail| Failure::Input(vec![detail]))
 }
 
 /// The failure of a document with mistakes.

@@ -72,7 +72,8 @@ pub struct Effort<'a> {
 }
 
 /// Number of matrix entries changed, in dictionaries and eliminations, that count as one more node. Nodes of some 20
-/// contacts change as many; with hundreds of contacts a search thus takes no longer than with a few.
+/// contacts change as many. A search among hundreds of contacts, whose nodes change far more, thus ends after about as
+/// much work as one among a few.
 const UNIT_OF_WORK: u64 = 32_768;
 /// Largest number of nodes inside solution sets of more than one dimension, whose edges are rays like any other.
 const MOST_IN_SETS: u64 = 512;

@@ -1,13 +1,13 @@
 //! Energies and modes.
 //!
 //! ```text
-//! ΔW = f_held·Δu + ½ (s₀ + s₁) f·Δu + ½ (R₀ + R₁)·Δu_support + ½ Σ (F₀ + F₁)·Δx_obstacle
+//! ΔW = f_held·Δu + ½ (s₀ + s₁) f·Δu + ½ (p₀ + p₁)·Δu + ½ (R₀ + R₁)·Δu_support + ½ Σ (F₀ + F₁)·Δx_obstacle
 //! ΔD = -½ Σ (t₀ + t₁)·Δx_slip
 //! ```
 //!
-//! by the trapezoidal rule; `R` are the forces of supports, `F` those of obstacles on nodes. `strain` is the
-//! structure's strain energy alone: the elastic energy of the penalties is in none of the three, so that it appears in
-//! `energy_error`.
+//! by the trapezoidal rule; `p` are loads that follow the structure, `R` the forces of supports, `F` those of obstacles
+//! on nodes. `strain` is the structure's strain energy alone: the elastic energy of the penalties is in none of the
+//! three, so that it appears in `energy_error`.
 
 use crate::continuation::penalty::law::PenaltyResponse;
 use crate::continuation::penalty::penalty_equations::{PenaltyPoint, PenaltySystem};

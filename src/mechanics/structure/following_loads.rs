@@ -1,4 +1,10 @@
-//! Loads that follow the structure: the external forces of the elements that stand for loads.
+//! Loads that follow the structure: the external forces of the elements that stand for loads, and their rates.
+//!
+//! ```text
+//! p_f(u) = -Σ_e A_eᵀ f_e(u_e),      ṗ_f = -Σ_e A_eᵀ K_e(u_e) u̇_e,      e: elements that stand for loads
+//! ```
+//!
+//! `f_int` and its tangent contain these elements; energies and works need their part alone.
 
 use crate::mechanics::structure::Structure;
 use crate::mechanics::structure::assembly::{ForceBuffer, StiffnessBuffer};

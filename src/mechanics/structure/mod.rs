@@ -4,6 +4,8 @@
 //! f_int(u) = Σ_e ∂W_e/∂u,   K(u) = Σ_e ∂²W_e/∂u²
 //! ```
 //!
+//! Loads that follow the structure are elements, too, whose forces are no derivative of an energy: see [`following_loads`].
+//!
 //! All quantities are dimensionless (`scene` divides by the scales). The module knows nothing of contacts, loads or
 //! paths. Each kind of element has a file of its own behind [`elements::FiniteElement`]; only [`numbering`] knows which
 //! degrees of freedom a node has.

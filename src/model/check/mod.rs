@@ -85,6 +85,7 @@ fn model(model: &Model, at: &DocumentPlace, mistakes: &mut Mistakes) -> usize {
             }
         }
     }
+    structure::unexpanded(model, at, mistakes);
     let scope = Scope::new(model, *at);
     structure::nodes(&scope, mistakes);
     structure::supports(&scope, mistakes);

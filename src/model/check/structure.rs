@@ -8,7 +8,7 @@ use crate::model::check::solids;
 use crate::model::input::limits::{COINCIDENCE_TOLERANCE, SYMMETRY_TOLERANCE};
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::quoted;
-use crate::model::request::{Component, Element};
+use crate::model::request::{Component, Element, Model};
 use std::collections::HashMap;
 
 pub(super) fn nodes(scope: &Scope, mistakes: &mut Mistakes) {
@@ -58,6 +58,23 @@ pub(super) fn component(component: Component, dimension: usize, at: &DocumentPla
         mistakes.add(at, || format!("there is no component {name} in {dimension} dimensions; {others} would do"));
     }
     known
+}
+
+/// Requests from JSON are expanded; models in code are where their user asks for it.
+const UNEXPANDED: &str =
+    "this names a part of a mesh, or a set or surface; `expanded` puts the parts in place of names first";
+
+/// Notes what only the expansion of the request reads.
+pub(super) fn unexpanded(model: &Model, at: &DocumentPlace, mistakes: &mut Mistakes) {
+    if model.mesh.is_some() {
+        mistakes.add(&at.member("mesh"), || UNEXPANDED);
+    }
+    for (name, _) in model.surfaces.iter().filter(|(_, surface)| surface.group.is_some()) {
+        mistakes.add(&at.member("surfaces").member(name).member("group"), || UNEXPANDED);
+    }
+    for (index, _) in model.contacts.iter().enumerate().filter(|(_, contact)| contact.surface.is_some()) {
+        mistakes.add(&at.member("contacts").index(index).member("surface"), || UNEXPANDED);
+    }
 }
 
 /// By index of the component.
@@ -110,7 +127,7 @@ pub(super) fn elements(scope: &Scope, mistakes: &mut Mistakes) {
                 distinct_nodes(scope, nodes, 2, &at, mistakes);
                 numbers::positive(*stiffness, &at.member("stiffness"), mistakes);
             }
-            Element::Solid(_) => mistakes.add(&at, || "a group of a mesh is expanded first: see `expand_sets`"),
+            Element::Solid(_) => mistakes.add(&at, || UNEXPANDED),
             _ => {
                 if let Some((kind, solid)) = element.solid() {
                     solids::solid(scope, kind, solid, &at, mistakes);

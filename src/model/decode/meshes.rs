@@ -3,8 +3,8 @@
 //! A model is expanded once, after it is read: checks, solver and results know nodes and elements alone.
 
 use crate::mechanics::structure::elements::solid::shapes::kind::SolidKind;
-use crate::model::decode::reader::{Choices, Fields, Input, number, text};
-use crate::model::decode::solids::{LOCKING, PLANE_CONDITION};
+use crate::model::decode::reader::{Choices, Fields, Input, text};
+use crate::model::decode::solids::{SolidOptions, solid_options};
 use crate::model::input::limits::{MAX_ELEMENTS, MAX_NODES};
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{quoted, suggestion};
@@ -54,16 +54,8 @@ pub(super) fn group(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
     let object = input.object(&GROUP, mistakes)?;
     let group = object.optional("group", mistakes, text);
     let material = object.optional("material", mistakes, text);
-    let plane = object.optional("plane", mistakes, |input, mistakes| input.choice(&PLANE_CONDITION, mistakes));
-    let thickness = object.optional("thickness", mistakes, number);
-    let locking = object.optional("locking", mistakes, |input, mistakes| input.choice(&LOCKING, mistakes));
-    Some(Element::Solid(MeshGroup {
-        group: group?,
-        material: material?,
-        plane: plane?,
-        thickness: thickness?,
-        locking: locking?,
-    }))
+    let SolidOptions { plane, thickness, locking } = solid_options(&object, mistakes)?;
+    Some(Element::Solid(MeshGroup { group: group?, material: material?, plane, thickness, locking }))
 }
 
 /// Puts the parts of the mesh in place of what names them. Returns whether the model is whole.

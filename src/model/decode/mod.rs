@@ -117,10 +117,10 @@ fn job_request(input: &Input, mistakes: &mut Mistakes) -> Option<JobRequest> {
 /// let mut model = Model::new(2).node("a", [0.0, 0.0]).node("b", [1.0, 0.0]);
 /// model.sets.insert("foot".into(), NamedSet { nodes: vec!["a".into(), "b".into()], elements: vec![] });
 /// let request = JobRequest::from(model.support("@foot", [Component::Y]));
-/// assert_eq!(arcslip::expand_sets(request)?.model.supports.len(), 2);
+/// assert_eq!(arcslip::expanded(request)?.model.supports.len(), 2);
 /// # Ok::<(), arcslip::InputErrors>(())
 /// ```
-pub fn expand_sets(mut request: JobRequest) -> Result<JobRequest, InputErrors> {
+pub fn expanded(mut request: JobRequest) -> Result<JobRequest, InputErrors> {
     let mut mistakes = Mistakes::default();
     expand(&mut request.model, &mut request.analysis, &mut mistakes);
     mistakes.into_result().map(|()| request)

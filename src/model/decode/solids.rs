@@ -24,7 +24,7 @@ const SURFACE: Fields = Fields { what: "a surface", known: &["faces", "group"], 
 
 const SET: Fields = Fields { what: "a set", known: &["nodes", "elements"], later: &[] };
 
-pub(super) const PLANE_CONDITION: Choices<PlaneCondition> = Choices {
+const PLANE_CONDITION: Choices<PlaneCondition> = Choices {
     what: "a condition in the third direction",
     known: &[
         ("strain", PlaneCondition::Strain),
@@ -34,7 +34,7 @@ pub(super) const PLANE_CONDITION: Choices<PlaneCondition> = Choices {
     later: &[],
 };
 
-pub(super) const LOCKING: Choices<LockingMend> = Choices {
+const LOCKING: Choices<LockingMend> = Choices {
     what: "a mend against locking",
     known: &[
         ("none", LockingMend::None),
@@ -67,19 +67,25 @@ pub(super) fn solid(kind: SolidKind, input: &Input, mistakes: &mut Mistakes) -> 
     let object = input.object(&SOLID, mistakes)?;
     let nodes = object.required("nodes", mistakes, strings);
     let material = object.required("material", mistakes, text);
+    let solid_options = solid_options(&object, mistakes);
+    let name = object.optional("name", mistakes, text);
+    let SolidOptions { plane, thickness, locking } = solid_options?;
+    let solid = Solid { nodes: nodes?, material: material?, plane, thickness, locking, name: name? };
+    Some(Element::of_solid(kind, solid))
+}
+
+/// What a solid, or a group of them, may say beside its nodes and its material.
+pub(super) struct SolidOptions {
+    pub plane: Option<PlaneCondition>,
+    pub thickness: Option<f64>,
+    pub locking: Option<LockingMend>,
+}
+
+pub(super) fn solid_options(object: &Object, mistakes: &mut Mistakes) -> Option<SolidOptions> {
     let plane = object.optional("plane", mistakes, |input, mistakes| input.choice(&PLANE_CONDITION, mistakes));
     let thickness = object.optional("thickness", mistakes, number);
     let locking = object.optional("locking", mistakes, |input, mistakes| input.choice(&LOCKING, mistakes));
-    let name = object.optional("name", mistakes, text);
-    let solid = Solid {
-        nodes: nodes?,
-        material: material?,
-        plane: plane?,
-        thickness: thickness?,
-        locking: locking?,
-        name: name?,
-    };
-    Some(Element::of_solid(kind, solid))
+    Some(SolidOptions { plane: plane?, thickness: thickness?, locking: locking? })
 }
 
 pub(super) fn material(input: &Input, mistakes: &mut Mistakes) -> Option<Material> {

@@ -55,7 +55,7 @@ impl Bordered {
 
     /// Whether `K` is symmetric, up to round-off.
     pub fn is_symmetric(&self) -> bool {
-        self.touched.is_empty() || self.symmetrised().lower.len() == self.lower.len()
+        self.differences().next().is_none()
     }
 
     /// The matrix with `borders` further border rows and columns of zeros.
@@ -225,28 +225,34 @@ impl Bordered {
         SymmetricFactor::new(self.pattern.clone(), &self.values).ok()?.inertia(tolerance)
     }
 
+    /// Row, column and difference to the mirror image of the entries below the diagonal that differ by more than round-off, in
+    /// order. A difference is round-off relative to the terms that the row and the column add up.
+    fn differences(&self) -> impl Iterator<Item = (usize, usize, f64)> {
+        let below = self.touched.iter().filter(|(row, column)| row != column);
+        let mut below: Vec<(usize, usize)> = below.map(|(row, column)| (*row.max(column), *row.min(column))).collect();
+        below.sort_unstable();
+        below.dedup();
+        below.into_iter().filter_map(|(row, column)| {
+            let value = |row, column| self.pattern.place(row, column).map(|place| self.values[place]);
+            let (below, above) = (value(row, column)?, value(column, row)?);
+            let diagonal = value(row, row)?.abs().min(value(column, column)?.abs());
+            let size = below.abs().max(above.abs()).max(diagonal);
+            let difference = below - above;
+            (difference.abs() > 4.0 * f64::EPSILON * size).then_some((row, column, difference))
+        })
+    }
+
     /// The matrix with a symmetric `K`: an unsymmetric remainder `a` of a row becomes a border `[[K, e], [a, -1]]`.
     pub(crate) fn symmetrised(&self) -> Self {
         let mut whole = self.clone();
         let mut extra: Vec<(usize, SparseEntries)> = Vec::new();
-        let mut touched: Vec<(usize, usize)> =
-            self.touched.iter().filter(|(row, column)| row > column).copied().collect();
-        touched.extend(self.touched.iter().filter(|(row, column)| row < column).map(|(row, column)| (*column, *row)));
-        touched.sort_unstable();
-        touched.dedup();
         let borders = self.lower.len();
-        for (row, column) in touched {
-            let (Some(below), Some(above)) = (self.pattern.place(row, column), self.pattern.place(column, row)) else {
-                continue;
-            };
-            let difference = self.values[below] - self.values[above];
-            let size = self.values[below].abs().max(self.values[above].abs());
-            if difference.abs() <= 4.0 * f64::EPSILON * size {
-                continue;
-            }
+        for (row, column, difference) in self.differences() {
             // The upper triangle defines the symmetric matrix.
-            whole.values[below] = self.values[above];
-            match extra.iter_mut().find(|(known, _)| *known == row) {
+            if let (Some(below), Some(above)) = (self.pattern.place(row, column), self.pattern.place(column, row)) {
+                whole.values[below] = self.values[above];
+            }
+            match extra.last_mut().filter(|(known, _)| *known == row) {
                 Some((_, entries)) => entries.push((column, difference)),
                 None => extra.push((row, smallvec![(column, difference)])),
             }

@@ -81,7 +81,8 @@ pub trait FiniteElement: Debug + Send + Sync {
         None
     }
 
-    /// Whether the element stands for a load: it stores no energy and resists no motion.
+    /// Whether the element stands for a load: it stores no energy and resists no motion. Its forces are no derivative of an
+    /// energy, and its tangent need not be symmetric.
     fn is_load(&self) -> bool {
         false
     }

@@ -1,7 +1,8 @@
 //! The stored request of a job.
 
+use crate::model::input::limits::MAX_TEXT_BYTES;
 use crate::model::{JobRequest, decode};
-use crate::service::http::answer::problem::Problem;
+use crate::service::http::answer::problem::{Kind, Problem};
 use crate::service::http::answer::tag;
 use crate::service::http::document;
 use crate::service::http::input::extract::{Parameters, QueryParameters};
@@ -10,6 +11,7 @@ use crate::service::http::view::job::Job;
 use axum::http::header;
 use axum::response::Response;
 use serde::Deserialize;
+use std::io::Write;
 
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
 #[serde(deny_unknown_fields)]
@@ -38,17 +40,46 @@ pub async fn request(
     let Target { service, id, headers, .. } = target;
     let text = service.jobs.store().request(id).await?.ok_or_else(|| Problem::not_found(format_args!("such job")))?;
     // The request never changes, so that its tag holds before the job has ended.
-    let bytes = text.len();
     let is_expanded = parameters.expanded.unwrap_or(false);
+    // A short text may name large sets many times.
+    let bytes = if is_expanded { MOST_EXPANDED } else { text.len() };
     let make = move || {
-        let text = if is_expanded { expanded(text) } else { text };
+        let text = if is_expanded { expanded(&text)? } else { text.into_bytes() };
         tag::bytes(&headers, true, [(header::CONTENT_TYPE, "application/json")], text)
     };
     service.offload.run(bytes, make).await
 }
 
-/// The text of the expanded request; the text as it is where it cannot be read, which a stored request can.
-fn expanded(text: String) -> String {
-    let request = decode::decode(text.as_bytes()).ok();
-    request.and_then(|request| serde_json::to_string(&request).ok()).unwrap_or(text)
+/// Bytes of an expanded request at most.
+const MOST_EXPANDED: usize = 4 * MAX_TEXT_BYTES;
+
+/// Bytes up to a number.
+struct BoundedText(Vec<u8>);
+
+impl Write for BoundedText {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        if self.0.len() + bytes.len() > MOST_EXPANDED {
+            return Err(std::io::ErrorKind::FileTooLarge.into());
+        }
+        self.0.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+/// The text of the expanded request.
+fn expanded(text: &str) -> Result<Vec<u8>, Problem> {
+    // A stored request has been read before.
+    let request = decode::decode(text.as_bytes())
+        .map_err(|errors| Problem::new(Kind::Internal, format!("the stored request cannot be read: {errors}")))?;
+    let mut bounded = BoundedText(Vec::with_capacity(text.len()));
+    serde_json::to_writer(&mut bounded, &request).map_err(|_| {
+        let detail =
+            format!("expanded, the request has more than {MOST_EXPANDED} bytes; without `expanded` it is given");
+        Problem::new(Kind::AnswerTooLarge, detail)
+    })?;
+    Ok(bounded.0)
 }
