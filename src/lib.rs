@@ -145,9 +145,9 @@ pub use model::decode::expanded;
 pub use model::request::{
     Analysis, ArcLength, Certificate, Component, Contact, ContactRange, ContentEncoding, DisplacementBound,
     ElasticConstants, Element, ElementReference, Events, Explore, ForceRange, JobRequest, LoadSign, LockingMend,
-    Material, MeshFile, MeshFormat, MeshGroup, Method, Model, Mpec, NamedSet, Obstacle, PlaneCondition, Record,
-    RecordedContact, RecordedContacts, RecordedElements, RecordedSupports, Regularised, Side, Solid, SolidKind, Stage,
-    Surface, Units, Until,
+    Material, MeshFile, MeshFormat, MeshGroup, Method, Model, Mpec, NamedSet, Obstacle, PlaneCondition, Polyline,
+    Record, RecordedContact, RecordedContacts, RecordedElements, RecordedSupports, Regularised, Side, Solid, SolidKind,
+    Stage, Surface, Units, Until,
 };
 pub use model::{InputError, InputErrors, read};
 pub use resources::cancel::CancelFlag;

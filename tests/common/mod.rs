@@ -24,6 +24,7 @@ pub mod postgres;
 pub mod process;
 pub mod random;
 pub mod random_corners;
+pub mod random_curves;
 pub mod random_solids;
 #[cfg(feature = "server")]
 pub mod reader;

@@ -40,6 +40,7 @@ mod mpec_cones;
 mod mpec_contact_increment;
 mod mpec_endings;
 mod mpec_unattained;
+mod polylines;
 mod published;
 mod random_corners;
 mod random_scenes;

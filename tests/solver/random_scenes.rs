@@ -2,6 +2,7 @@
 
 use crate::common::paths::{Traced, judged};
 use crate::common::random::{random_frame, random_scene, random_space};
+use crate::common::random_curves::random_on_curve;
 use crate::common::random_solids::random_solid;
 use crate::common::variants::turned_in_plane;
 use arcslip::continuation::scene::Scene;
@@ -13,6 +14,7 @@ use arcslip::result::stop_reason::StopReason;
 const SCENES: u64 = 200;
 const FRAMES: u64 = 200;
 const BODIES: u64 = 100;
+const ON_CURVES: u64 = 120;
 const SCENES_IN_SPACE: u64 = 60;
 /// Scenes in space whose slips begin or end hardly pressed, or are pressed only once the node has moved, and go on.
 const HARDLY_PRESSED: [u64; 22] =
@@ -141,6 +143,13 @@ fn every_path_keeps_the_laws() {
     assert!(degenerate <= 3 * SCENES / 20, "{degenerate} scenes report a degenerate point");
     // The scenes are not idle.
     assert!(contact_changes >= 100 && smooth_limits >= 20 && bifurcations >= 50);
+}
+
+#[test]
+fn every_path_on_curves_keeps_the_laws() {
+    let seeds: Vec<u64> = (0..ON_CURVES).collect();
+    let Seen { contact_changes, smooth_limits, .. } = judge_all(random_on_curve, &seeds);
+    assert!(contact_changes >= 50 && smooth_limits >= 10);
 }
 
 #[test]

@@ -46,7 +46,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `errors` | the errors and their maxima |
-//! | `posted`, `elements`, `beams`, `space_beams`, `solids`, `dual_number`, `obstacles`, `vector` | the posted model, with indices instead of names |
+//! | `posted`, `elements`, `beams`, `space_beams`, `solids`, `dual_number`, `obstacles`, `polylines`, `vector` | the posted model, with indices instead of names |
 //! | `contacts` | the check of one contact |
 //! | `global` | the balance of the whole structure, and the forces as reported |
 //! | `rows`, `apart` | the contacts with a row in an increment, and the contacts without a row |
@@ -61,6 +61,7 @@ pub(crate) mod errors;
 pub(crate) mod global;
 pub(crate) mod history;
 pub(crate) mod obstacles;
+mod polylines;
 pub(crate) mod posted;
 pub(crate) mod rows;
 pub(crate) mod solids;

@@ -3,23 +3,28 @@
 //! A frame is the gap, the unit normal into the free side, and the tangents: in 2D `(n_y, -n_x)`; in 3D
 //! `t1 = (e_k - n_k n)/|.|` with `k` the first index of the smallest `|n_k|`, and `t2 = n x t1`.
 
+use crate::check::measure::polylines::MeasuredCurve;
 use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::model::request::{Obstacle as Posted, Side};
 
 /// An obstacle at rest.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct MeasuredObstacle {
-    /// A point of a plane, or the centre of a ball.
+    /// A point of a plane, the centre of a ball; the origin for a polyline.
     place: MeasuredVector,
     shape: ObstacleShape,
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 enum ObstacleShape {
     /// Unit normal into the free side.
     Plane(MeasuredVector),
     /// `sign` is 1 if the free side is outside, otherwise -1.
-    Ball { radius: f64, sign: f64 },
+    Ball {
+        radius: f64,
+        sign: f64,
+    },
+    Polyline(MeasuredCurve),
 }
 
 /// The gap and the frame of an obstacle at a node.
@@ -44,6 +49,9 @@ impl MeasuredObstacle {
                 let sign = if *side == Side::Outside { 1.0 } else { -1.0 };
                 Self { place: padded(center), shape: ObstacleShape::Ball { radius: *radius, sign } }
             }
+            Posted::Polyline(polyline) => {
+                Self { place: MeasuredVector::zeros(), shape: ObstacleShape::Polyline(MeasuredCurve::new(polyline)) }
+            }
         }
     }
 
@@ -56,12 +64,16 @@ impl MeasuredObstacle {
         displacement: &MeasuredVector,
     ) -> MeasuredFrame {
         let from = (place - self.place) + (displacement - shift);
-        let (gap, normal, size) = match self.shape {
-            ObstacleShape::Plane(normal) => (from.dot(&normal), normal, 0.0),
+        let (gap, normal, size) = match &self.shape {
+            ObstacleShape::Plane(normal) => (from.dot(normal), *normal, 0.0),
             ObstacleShape::Ball { radius, sign } => {
                 let distance = from.norm();
                 let normal = if distance > 0.0 { from * (sign / distance) } else { MeasuredVector::x() };
-                (sign * (distance - radius), normal, radius)
+                (sign * (distance - radius), normal, *radius)
+            }
+            ObstacleShape::Polyline(curve) => {
+                let (gap, [x, y]) = curve.gap([from.x, from.y]);
+                (gap, MeasuredVector::new(x, y, 0.0), curve.size)
             }
         };
         let reach = [place, &self.place, displacement, shift].into_iter().map(largest).fold(size, f64::max);

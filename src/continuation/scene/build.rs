@@ -1,5 +1,6 @@
 //! Conversion of the request's names and units to dimensionless numbers.
 
+use crate::algebra::plane_curve::PlaneCurve;
 use crate::continuation::scene::elements::ElementBuilder;
 use crate::continuation::scene::requested_contacts::Reported;
 use crate::continuation::scene::solid_loads::{LoadedSolids, add_pressure_faces, pressed_surfaces};
@@ -75,10 +76,11 @@ pub(super) fn build_contacts(
     let mut of_node: HashMap<usize, Vec<usize>> = HashMap::new();
     // By node and gap, so that only contacts of nearly the same gap are compared.
     let mut by_gap: HashMap<usize, BTreeMap<u64, Vec<usize>>> = HashMap::new();
+    let curves = curves(model, length);
     for (index, contact) in model.contacts.iter().enumerate() {
         budget::spend(1);
         let node_number = numbers[contact.node.as_str()];
-        let built = build_contact(model, contact, node_number, length, structure);
+        let built = build_contact(model, contact, node_number, length, structure, &curves);
         if !built.friction.is_rough() && contact.friction > 0.0 {
             left_out.push(LeftOut {
                 what: format!("friction of {} on {}", contact.node, contact.obstacle),
@@ -175,12 +177,25 @@ fn coincide(first: &ContactPair, second: &ContactPair) -> bool {
     let surfaces = match (&first.obstacle, &second.obstacle) {
         (RigidSurface::Plane { normal: a }, RigidSurface::Plane { normal: b }) => near(a, b),
         (RigidSurface::Ball { offset: a, side: x }, RigidSurface::Ball { offset: b, side: y }) => near(a, b) && x == y,
-        (RigidSurface::Plane { .. }, RigidSurface::Ball { .. })
-        | (RigidSurface::Ball { .. }, RigidSurface::Plane { .. }) => false,
+        (
+            RigidSurface::Curve { curve: a, offset: x, side: u, .. },
+            RigidSurface::Curve { curve: b, offset: y, side: v, .. },
+        ) => (Arc::ptr_eq(a, b) || a == b) && near(x, y) && u == v,
+        (RigidSurface::Plane { .. } | RigidSurface::Ball { .. } | RigidSurface::Curve { .. }, _) => false,
     };
     first.kinematics.node() == second.kinematics.node()
         && surfaces
         && (first.initial_gap - second.initial_gap).abs() <= COINCIDENCE_TOLERANCE
+}
+
+/// The curves of the polylines by name, relative to their origins; dimensionless. A model that was checked has one for
+/// each polyline.
+fn curves(model: &Model, length: f64) -> HashMap<&str, Arc<PlaneCurve>> {
+    let polylines = model.obstacles.iter().filter_map(|(name, obstacle)| match obstacle {
+        request::Obstacle::Polyline(polyline) => Some((name.as_str(), polyline)),
+        request::Obstacle::Plane { .. } | request::Obstacle::Ball { .. } => None,
+    });
+    polylines.filter_map(|(name, polyline)| Some((name, Arc::new(polyline.curve(length).ok()?)))).collect()
 }
 
 fn build_contact(
@@ -189,6 +204,7 @@ fn build_contact(
     node: usize,
     length: f64,
     structure: &Structure,
+    curves: &HashMap<&str, Arc<PlaneCurve>>,
 ) -> ContactPair {
     let dimension = model.dimension;
     let place = &model.nodes[&contact.node];
@@ -208,6 +224,14 @@ fn build_contact(
             };
             let gap = side * (size(&offset) * length - radius);
             (RigidSurface::Ball { offset, side }, snapped(gap, reach(center).max(*radius)))
+        }
+        request::Obstacle::Polyline(polyline) => {
+            let (origin, side) = (polyline.origin(), polyline.free_side());
+            let offset = [(place[0] - origin[0]) / length, (place[1] - origin[1]) / length, 0.0];
+            let curve = Arc::clone(&curves[contact.obstacle.as_str()]);
+            let before = side * curve.closest([offset[0], offset[1]]).distance;
+            let far = polyline.points.iter().map(|point| reach(point)).fold(0.0, f64::max);
+            (RigidSurface::Curve { curve, offset, side, before }, snapped(before * length, far))
         }
         request::Obstacle::Plane { point, normal } => {
             let largest = normal.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));

@@ -1,6 +1,8 @@
 //! Obstacles: the distance of a node from an obstacle, and its direction.
 
+use crate::algebra::plane_curve::PlaneCurve;
 use crate::mechanics::contact::vector::{Vector, add, dot, size, unit};
+use std::sync::Arc;
 
 /// The surface of a rigid obstacle, relative to one contact.
 #[derive(Debug, Clone)]
@@ -13,6 +15,16 @@ pub enum RigidSurface {
         offset: Vector,
         /// 1 where nodes are free outside, -1 where they are free inside.
         side: f64,
+    },
+    /// A curve in the plane.
+    Curve {
+        curve: Arc<PlaneCurve>,
+        /// The position of the undeformed node, relative to the origin of the curve.
+        offset: Vector,
+        /// 1 where nodes are free to the left of the curve, -1 where they are free to the right.
+        side: f64,
+        /// Distance of the undeformed node into the free side.
+        before: f64,
     },
 }
 
@@ -34,13 +46,19 @@ impl RigidSurface {
                 let normal = [side * outward[0], side * outward[1], side * outward[2]];
                 (side * change, normal, side / radius)
             }
+            Self::Curve { curve, offset, side, before } => {
+                let place = add(offset, 1.0, relative);
+                let closest = curve.closest([place[0], place[1]]);
+                let normal = [side * closest.normal[0], side * closest.normal[1], 0.0];
+                (side * closest.distance - before, normal, -side * closest.curvature_at_place())
+            }
         }
     }
 
     pub fn is_curved(&self) -> bool {
         match self {
             Self::Plane { .. } => false,
-            Self::Ball { .. } => true,
+            Self::Ball { .. } | Self::Curve { .. } => true,
         }
     }
 }

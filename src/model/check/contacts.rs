@@ -3,15 +3,18 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::model::check::numbers::{self, dot};
-use crate::model::check::obstacles::{Facing, facing};
+use crate::model::check::obstacles::{Curves, Facing, facing};
 use crate::model::check::scope::Scope;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::quoted;
-use crate::model::request::{Contact, Obstacle, Side};
+use crate::model::request::{Contact, Obstacle, Polyline, Side};
 use crate::resources::budget;
 
 /// Unit normals whose product is this near -1 are opposed.
 const OPPOSED: f64 = 1e-12;
+
+/// A component of a unit normal above this is no rounding error of a curve.
+const CLEARLY: f64 = 1e-9;
 
 /// A node before a plane at the start.
 struct Gap<'a> {
@@ -21,7 +24,7 @@ struct Gap<'a> {
     tolerance: f64,
 }
 
-pub(super) fn contacts(scope: &Scope, mistakes: &mut Mistakes) {
+pub(super) fn contacts(scope: &Scope, curves: &Curves, mistakes: &mut Mistakes) {
     let at = scope.at.member("contacts");
     let mut seen = HashSet::new();
     let mut gaps: HashMap<usize, Vec<Gap>> = HashMap::new();
@@ -31,7 +34,7 @@ pub(super) fn contacts(scope: &Scope, mistakes: &mut Mistakes) {
         let node = scope.node(&contact.node, &at.member("node"), mistakes);
         let obstacle = scope.obstacle(&contact.obstacle, &at.member("obstacle"), mistakes);
         let (Some(node), Some((number, obstacle))) = (node, obstacle) else { continue };
-        let Some(facing) = facing(scope, node, obstacle) else { continue };
+        let Some(facing) = facing(scope, node, obstacle, curves[number].as_ref()) else { continue };
         if !useful(scope, contact, node, obstacle, &facing, &at, mistakes) {
             continue;
         }
@@ -58,7 +61,7 @@ fn friction(contact: &Contact, at: &DocumentPlace, mistakes: &mut Mistakes) {
 
 /// Notes a contact whose reaction acts on no free component of its node.
 ///
-/// A ball's normal turns as the node moves, so there it matters only while the two touch, and where the node cannot
+/// The normal of a ball or a polyline turns as the node moves, so there it matters only while the two touch, and where the node cannot
 /// move freely at all.
 fn useful(
     scope: &Scope,
@@ -82,7 +85,10 @@ fn useful(
         Obstacle::Ball { radius, .. } if gap.abs() <= *tolerance && !along(tolerance / radius) => {
             "touches the ball where it cannot move freely along the normal; move it, or leave the contact out"
         }
-        Obstacle::Plane { .. } | Obstacle::Ball { .. } => return true,
+        Obstacle::Polyline(_) if gap.abs() <= *tolerance && !along(CLEARLY) => {
+            "touches the polyline where it cannot move freely along the normal; move it, or leave the contact out"
+        }
+        Obstacle::Plane { .. } | Obstacle::Ball { .. } | Obstacle::Polyline(_) => return true,
     };
     mistakes.add(&at.member("node"), || format!("the node {} is supported and {why}", quoted(&contact.node)));
     false
@@ -95,7 +101,9 @@ fn start(contact: &Contact, obstacle: &Obstacle, facing: &Facing, at: &DocumentP
         mistakes.add(at, || {
             let (node, name) = names();
             let side = match obstacle {
-                Obstacle::Plane { .. } => "behind",
+                Obstacle::Plane { .. } | Obstacle::Polyline(Polyline { closed: false, .. }) => "behind",
+                Obstacle::Polyline(Polyline { side: Some(Side::Inside), .. }) => "outside the polyline",
+                Obstacle::Polyline(_) => "inside the polyline",
                 Obstacle::Ball { side: Side::Outside, .. } => "inside the ball",
                 Obstacle::Ball { side: Side::Inside, .. } => "outside the ball",
             };

@@ -200,6 +200,6 @@ fn motions(scope: &Scope, around: &Surroundings, stage: &Stage, at: &DocumentPla
 fn slides_along(obstacle: &Obstacle, motion: &[f64]) -> bool {
     match obstacle {
         Obstacle::Plane { normal, .. } => dot(normal, motion).abs() <= ALONG * norm(normal) * norm(motion),
-        Obstacle::Ball { .. } => false,
+        Obstacle::Ball { .. } | Obstacle::Polyline(_) => false,
     }
 }

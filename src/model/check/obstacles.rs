@@ -1,14 +1,29 @@
 //! Checks the shapes of obstacles, and the positions of nodes relative to them at the start.
 
+use crate::algebra::plane_curve::{CurveMistake, PlaneCurve};
+use crate::model::Model;
 use crate::model::check::numbers::{self, difference, dot, largest, norm};
 use crate::model::check::scope::{Scope, proper_name};
-use crate::model::input::mistakes::Mistakes;
-use crate::model::request::{Obstacle, Side};
+use crate::model::input::limits::MAX_POLYLINE_POINTS;
+use crate::model::input::mistakes::{DocumentPlace, Mistakes};
+use crate::model::request::{Obstacle, Polyline, Side};
 
-pub(super) fn obstacles(scope: &Scope, mistakes: &mut Mistakes) {
+/// The curves of the polylines, in the unit of the model; `None` for other obstacles and for malformed polylines.
+pub(super) type Curves = Vec<Option<PlaneCurve>>;
+
+pub(super) fn points_of_polylines(model: &Model) -> usize {
+    let points = |obstacle: &Obstacle| match obstacle {
+        Obstacle::Polyline(polyline) => polyline.points.len(),
+        Obstacle::Plane { .. } | Obstacle::Ball { .. } => 0,
+    };
+    model.obstacles.values().map(points).sum()
+}
+
+pub(super) fn obstacles(scope: &Scope, mistakes: &mut Mistakes) -> Curves {
     let at = scope.at.member("obstacles");
     let dimension = scope.model.dimension;
-    for (name, obstacle) in &scope.model.obstacles {
+    let mut curves = vec![None; scope.model.obstacles.len()];
+    for ((name, obstacle), curve) in scope.model.obstacles.iter().zip(&mut curves) {
         let at = at.member(name);
         proper_name(name, &at, mistakes);
         match obstacle {
@@ -23,7 +38,65 @@ pub(super) fn obstacles(scope: &Scope, mistakes: &mut Mistakes) {
                 numbers::vector(center, dimension, &at.member("center"), mistakes);
                 numbers::positive(*radius, &at.member("radius"), mistakes);
             }
+            Obstacle::Polyline(polyline) => *curve = curve_of(polyline, dimension, &at, mistakes),
         }
+    }
+    curves
+}
+
+fn curve_of(polyline: &Polyline, dimension: usize, at: &DocumentPlace, mistakes: &mut Mistakes) -> Option<PlaneCurve> {
+    let before = mistakes.count();
+    if dimension != 2 {
+        mistakes
+            .add(&at.member("kind"), || "a polyline is an obstacle in the plane; in space there are planes and balls");
+        return None;
+    }
+    let Polyline { points, closed, rounding, side } = polyline;
+    let at_points = at.member("points");
+    if points.len() > MAX_POLYLINE_POINTS {
+        let found = points.len();
+        mistakes.add(&at_points, || format!("found {found} points; at most {MAX_POLYLINE_POINTS} are taken"));
+        return None;
+    }
+    for (number, point) in points.iter().enumerate() {
+        numbers::vector(point, dimension, &at_points.index(number), mistakes);
+    }
+    if let Some(rounding) = rounding {
+        numbers::positive(*rounding, &at.member("rounding"), mistakes);
+    }
+    if side.is_some() && !closed {
+        mistakes.add(&at.member("side"), || {
+            "an open polyline has no inside; its free side is to the left of its direction: leave this out, and turn the \
+             points round where the other side is free"
+        });
+    }
+    if mistakes.count() != before {
+        return None;
+    }
+    polyline.curve(1.0).map_err(|mistake| note(mistake, polyline, at, mistakes)).ok()
+}
+
+fn note(mistake: CurveMistake, polyline: &Polyline, at: &DocumentPlace, mistakes: &mut Mistakes) {
+    let points = at.member("points");
+    match mistake {
+        CurveMistake::TooFew { needed } => mistakes.add(&points, || {
+            let (found, kind) = (polyline.points.len(), if polyline.closed { "a closed" } else { "an open" });
+            format!("found {found} points; {kind} polyline has {needed} or more")
+        }),
+        CurveMistake::Coincident { point } => mistakes.add(&points.index(point), || {
+            "the point coincides with the one before it; leave one out (a closed polyline does not repeat its first point)"
+        }),
+        CurveMistake::TurnsBack { point } => mistakes.add(&points.index(point), || {
+            "the polyline turns back here, by more than 170 degrees; put two corners in place of this one"
+        }),
+        CurveMistake::NoRoom { point, most } => mistakes.add(&at.member("rounding"), || {
+            format!("the edges at point {point} leave room for a rounding of at most {most:?}")
+        }),
+        CurveMistake::Crosses { near } => mistakes.add(&points, || {
+            let origin = polyline.origin();
+            let [x, y] = [near[0] + origin[0], near[1] + origin[1]];
+            format!("the curve crosses itself near [{x:.6}, {y:.6}], so that it has no free side; change the points there")
+        }),
     }
 }
 
@@ -39,9 +112,10 @@ pub(super) struct Facing {
 }
 
 /// `None` if the node or the obstacle is malformed, which is reported elsewhere.
-pub(super) fn facing(scope: &Scope, node: usize, obstacle: &Obstacle) -> Option<Facing> {
+pub(super) fn facing(scope: &Scope, node: usize, obstacle: &Obstacle, curve: Option<&PlaneCurve>) -> Option<Facing> {
     let position = scope.position(node)?;
     match obstacle {
+        Obstacle::Polyline(polyline) => Some(facing_curve(scope, position, polyline, curve?)),
         Obstacle::Plane { point, normal } => facing_plane(scope, position, point, normal),
         Obstacle::Ball { center, radius, side } => facing_ball(scope, position, center, *radius, *side),
     }
@@ -72,6 +146,17 @@ fn facing_ball(scope: &Scope, position: &[f64], center: &[f64], radius: f64, sid
     };
     let normal = (distance > tolerance).then(|| scaled(&outward, length));
     Some(Facing { gap, normal, tolerance })
+}
+
+fn facing_curve(scope: &Scope, position: &[f64], polyline: &Polyline, curve: &PlaneCurve) -> Facing {
+    let (origin, side) = (polyline.origin(), polyline.free_side());
+    let closest = curve.closest([position[0] - origin[0], position[1] - origin[1]]);
+    let reach = polyline.points.iter().map(|point| largest(point)).fold(largest(position), f64::max);
+    Facing {
+        gap: side * closest.distance,
+        normal: Some(closest.normal.map(|part| side * part).to_vec()),
+        tolerance: scope.penetration_tolerance(reach),
+    }
 }
 
 fn scaled(vector: &[f64], length: f64) -> Vec<f64> {

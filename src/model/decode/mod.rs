@@ -7,6 +7,7 @@ mod analysis;
 mod follow;
 mod meshes;
 mod model;
+mod obstacles;
 mod reader;
 mod sets;
 mod solids;

@@ -4,11 +4,10 @@ use indexmap::IndexMap;
 
 use crate::mechanics::structure::elements::solid::shapes::kind::SolidKind;
 use crate::model::decode::reader::{Choices, Fields, Input, count, number, numbers, text};
-use crate::model::decode::{meshes, solids};
+use crate::model::decode::{meshes, obstacles, solids};
 use crate::model::input::mistakes::Mistakes;
 use crate::model::request::{
-    BendingStiffness, Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Strain, Units,
-    Until,
+    BendingStiffness, Component, Contact, DisplacementBound, Element, Model, Stage, Strain, Units, Until,
 };
 
 const MODEL: Fields = Fields {
@@ -59,10 +58,6 @@ const ROTATIONAL_SPRING: Fields =
     Fields { what: "a rotational spring", known: &["kind", "nodes", "stiffness", "name"], later: &[] };
 
 const SPRING: Fields = Fields { what: "a spring", known: &["kind", "nodes", "stiffness", "name"], later: &[] };
-
-const PLANE: Fields = Fields { what: "a plane", known: &["kind", "point", "normal"], later: &[] };
-
-const BALL: Fields = Fields { what: "a ball", known: &["kind", "center", "radius", "side"], later: &[] };
 
 const CONTACT: Fields = Fields {
     what: "a contact",
@@ -125,21 +120,6 @@ const ELEMENT_KIND: Choices<ElementKind> = Choices {
     later: &[],
 };
 
-#[derive(Debug, Clone, Copy)]
-enum ObstacleKind {
-    Plane,
-    Ball,
-}
-
-const OBSTACLE_KIND: Choices<ObstacleKind> = Choices {
-    what: "a kind of obstacle",
-    known: &[("plane", ObstacleKind::Plane), ("ball", ObstacleKind::Ball)],
-    later: &["segment", "box"],
-};
-
-const SIDE: Choices<Side> =
-    Choices { what: "a side of a ball", known: &[("outside", Side::Outside), ("inside", Side::Inside)], later: &[] };
-
 const STRAIN: Choices<Strain> = Choices {
     what: "a measure of strain",
     known: &[("engineering", Strain::Engineering), ("green", Strain::Green), ("log", Strain::Log)],
@@ -184,8 +164,9 @@ pub(super) fn model(input: &Input, mistakes: &mut Mistakes) -> Option<Model> {
         .with_default("surfaces", Default::default(), mistakes, |input, mistakes| input.map(mistakes, solids::surface));
     let sets =
         object.with_default("sets", Default::default(), mistakes, |input, mistakes| input.map(mistakes, solids::set));
-    let obstacles =
-        object.with_default("obstacles", Default::default(), mistakes, |input, mistakes| input.map(mistakes, obstacle));
+    let obstacles = object.with_default("obstacles", Default::default(), mistakes, |input, mistakes| {
+        input.map(mistakes, obstacles::obstacle)
+    });
     let contacts =
         object.with_default("contacts", Vec::new(), mistakes, |input, mistakes| input.list(mistakes, contact));
     let stages = object.required("stages", mistakes, |input, mistakes| input.list(mistakes, stage));
@@ -313,28 +294,6 @@ fn rotational_spring(input: &Input, mistakes: &mut Mistakes) -> Option<Element> 
     let stiffness = object.required("stiffness", mistakes, number);
     let name = object.optional("name", mistakes, text);
     Some(Element::RotationalSpring { nodes: nodes?, stiffness: stiffness?, name: name? })
-}
-
-fn obstacle(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {
-    match input.kind(&OBSTACLE_KIND, mistakes)? {
-        ObstacleKind::Plane => plane(input, mistakes),
-        ObstacleKind::Ball => ball(input, mistakes),
-    }
-}
-
-fn plane(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {
-    let object = input.object(&PLANE, mistakes)?;
-    let point = object.required("point", mistakes, numbers);
-    let normal = object.required("normal", mistakes, numbers);
-    Some(Obstacle::Plane { point: point?, normal: normal? })
-}
-
-fn ball(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {
-    let object = input.object(&BALL, mistakes)?;
-    let center = object.required("center", mistakes, numbers);
-    let radius = object.required("radius", mistakes, number);
-    let side = object.with_default("side", Side::default(), mistakes, |input, mistakes| input.choice(&SIDE, mistakes));
-    Some(Obstacle::Ball { center: center?, radius: radius?, side: side? })
 }
 
 fn contact(input: &Input, mistakes: &mut Mistakes) -> Option<Contact> {

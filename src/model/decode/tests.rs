@@ -110,8 +110,11 @@ fn set() -> impl Strategy<Value = NamedSet> {
 fn obstacle() -> impl Strategy<Value = Obstacle> {
     let plane = (numbers(), numbers()).prop_map(|(point, normal)| Obstacle::Plane { point, normal });
     let side = one_of([Side::Outside, Side::Inside]);
-    let ball = (numbers(), number(), side).prop_map(|(center, radius, side)| Obstacle::Ball { center, radius, side });
-    prop_oneof![plane, ball]
+    let ball =
+        (numbers(), number(), side.clone()).prop_map(|(center, radius, side)| Obstacle::Ball { center, radius, side });
+    let polyline = (vec(numbers(), 0..4), any::<bool>(), of(number()), of(side))
+        .prop_map(|(points, closed, rounding, side)| Obstacle::Polyline(Polyline { points, closed, rounding, side }));
+    prop_oneof![plane, ball, polyline]
 }
 
 fn contact() -> impl Strategy<Value = Contact> {

@@ -15,6 +15,10 @@ pub const MAX_NODES: usize = 100_000;
 pub const MAX_ELEMENTS: usize = 250_000;
 /// Obstacles of a model.
 pub const MAX_OBSTACLES: usize = 20_000;
+/// Points of one polyline.
+pub const MAX_POLYLINE_POINTS: usize = 2_000;
+/// Points of all polylines of a model.
+pub const MAX_POINTS_OF_POLYLINES: usize = 20_000;
 /// Contacts of a model.
 pub const MAX_CONTACTS: usize = 20_000;
 /// Number of nodes that names of sets and surfaces stand for in a request, counted as often as they are named.

@@ -27,8 +27,8 @@ pub use record::{
 };
 pub use structure::{
     BendingStiffness, Component, Contact, ContentEncoding, DisplacementBound, ElasticConstants, Element, Material,
-    MeshFile, MeshFormat, MeshGroup, Model, NamedSet, Obstacle, PlaneCondition, Side, Solid, Stage, Surface, Units,
-    Until,
+    MeshFile, MeshFormat, MeshGroup, Model, NamedSet, Obstacle, PlaneCondition, Polyline, Side, Solid, Stage, Surface,
+    Units, Until,
 };
 
 /// A model and how to trace it.

@@ -1,5 +1,6 @@
 //! Rigid obstacles, and contacts of nodes with them.
 
+use crate::model::request::structure::polyline::Polyline;
 use serde::{Deserialize, Serialize};
 
 /// A rigid obstacle that nodes may touch.
@@ -25,6 +26,8 @@ pub enum Obstacle {
         #[serde(default)]
         side: Side,
     },
+    /// A smooth curve through points, or a polygon with rounded corners, in the plane.
+    Polyline(Polyline),
 }
 
 impl Obstacle {
@@ -45,17 +48,32 @@ impl Obstacle {
     pub fn ball(center: impl Into<Vec<f64>>, radius: f64, side: Side) -> Self {
         Self::Ball { center: center.into(), radius, side }
     }
+
+    /// The smooth curve through points (length) in the plane, open, free to the left of its direction.
+    ///
+    /// ```
+    /// use arcslip::{Obstacle, Polyline, Side};
+    ///
+    /// let ramp = Obstacle::polyline([[0.0, 0.0], [1.0, 0.1], [2.0, 0.4]]);
+    /// let corners = vec![vec![0.0, 0.0], vec![2.0, 0.0], vec![2.0, 1.0], vec![0.0, 1.0]];
+    /// let block = Polyline { points: corners, ..Polyline::default() }.closed(Side::Outside).rounded(0.1);
+    /// assert_ne!(ramp, Obstacle::Polyline(block));
+    /// ```
+    pub fn polyline(points: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        let points = points.into_iter().map(|point| point.to_vec()).collect();
+        Self::Polyline(Polyline { points, ..Polyline::default() })
+    }
 }
 
-/// On which side of a ball the nodes are free.
+/// On which side of a ball or a closed polyline the nodes are free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
-    /// Nodes stay out of the ball.
+    /// Nodes stay out of it.
     #[default]
     Outside,
-    /// Nodes stay in the ball.
+    /// Nodes stay in it.
     Inside,
 }
 

@@ -1,0 +1,76 @@
+//! Rigid obstacles along polylines in the plane.
+
+use serde::{Deserialize, Serialize};
+
+use crate::algebra::plane_curve::make::doubled_area;
+use crate::algebra::plane_curve::{CurveMistake, PlaneCurve, Point};
+use crate::model::request::structure::obstacle::Side;
+
+/// A rigid obstacle in the plane along a smooth curve through points. The free side of an open polyline is to the left
+/// of its direction; its ends continue straight to infinity.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Polyline {
+    /// The points (length, 2 coordinates each) in order: 2 or more, 3 or more where the polyline is closed.
+    pub points: Vec<Vec<f64>>,
+    /// Whether the last point is joined to the first.
+    #[serde(default)]
+    pub closed: bool,
+    /// Edges are straight, and each corner is rounded off from this distance (length, positive) before it to the same
+    /// distance behind it. When absent the obstacle is the cubic spline through the points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0))]
+    pub rounding: Option<f64>,
+    /// Where nodes are free, for a closed polyline: `outside` when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub side: Option<Side>,
+}
+
+impl Polyline {
+    /// Closes the polyline; nodes stay on the given side.
+    pub fn closed(mut self, side: Side) -> Self {
+        (self.closed, self.side) = (true, Some(side));
+        self
+    }
+
+    /// Straight edges with corners rounded off within this distance (length).
+    pub fn rounded(mut self, rounding: f64) -> Self {
+        self.rounding = Some(rounding);
+        self
+    }
+
+    /// The first point, from which [`Self::curve`] measures: far from the origin no digits are lost.
+    pub(crate) fn origin(&self) -> Point {
+        self.points.first().map_or([0.0; 2], |point| at(point))
+    }
+
+    /// The curve relative to the first point, in multiples of a unit of length.
+    pub(crate) fn curve(&self, unit: f64) -> Result<PlaneCurve, CurveMistake> {
+        let points: Vec<Point> = self.relative().map(|place| place.map(|part| part / unit)).collect();
+        PlaneCurve::of_polyline(&points, self.closed, self.rounding.map(|rounding| rounding / unit))
+    }
+
+    /// 1 where the free side is to the left of the curve, -1 where it is to the right.
+    pub(crate) fn free_side(&self) -> f64 {
+        if !self.closed {
+            return 1.0;
+        }
+        let points: Vec<Point> = self.relative().collect();
+        let is_left_inside = doubled_area(&points) > 0.0;
+        if is_left_inside == (self.side == Some(Side::Inside)) { 1.0 } else { -1.0 }
+    }
+
+    fn relative(&self) -> impl Iterator<Item = Point> {
+        let origin = self.origin();
+        self.points.iter().map(move |point| {
+            let [x, y] = at(point);
+            [x - origin[0], y - origin[1]]
+        })
+    }
+}
+
+/// The first two coordinates; 0 where there are fewer.
+fn at(point: &[f64]) -> Point {
+    [0, 1].map(|k| point.get(k).copied().unwrap_or(0.0))
+}
