@@ -26,6 +26,7 @@ class Building(unittest.TestCase):
         self.assertEqual(model.spring(-1, stiffness=7, name="tie"), 2)
         model.plane("floor", (0, 0), (0, 1))
         model.ball("drum", center=(0, 2), radius=0.5, side="outside")
+        model.polyline("ramp", [(0, 0), (4, 1)], rounding=0.5)
         self.assertEqual(model.contact(2, "floor", 0.3), 0)
         model.stage("push", {1: (0, -1)}, {"n0": (0, -0.1)}, {"floor": (0, 1)}, {"load_above": 3})
         self.assertEqual(model.request(max_increments=5, arc_length={"max": 0.1}), {
@@ -45,6 +46,7 @@ class Building(unittest.TestCase):
                 "obstacles": {
                     "floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]},
                     "drum": {"kind": "ball", "center": [0, 2], "radius": 0.5, "side": "outside"},
+                    "ramp": {"kind": "polyline", "points": [[0, 0], [4, 1]], "closed": False, "rounding": 0.5},
                 },
                 "contacts": [{"node": "n2", "obstacle": "floor", "friction": 0.3}],
             },

@@ -5,7 +5,7 @@
 //! of its Bernstein coefficients, which bound their number (J. M. Lane and R. F. Riesenfeld, BIT 21 (1981) 112,
 //! doi:10.1007/BF01934076).
 
-use crate::algebra::plane_curve::{Bounds, ClosestPoint, PlaneCurve, Point, Ray, at, cross, dot, minus, plus, size};
+use crate::algebra::plane_curve::{EndRay, PlaneBox, PlaneCurve, PlanePoint, at, cross, dot, minus, plus, size};
 use crate::algebra::scalar_root::find_root;
 
 /// Halvings of a parameter interval after which its middle stands for the roots in it.
@@ -18,16 +18,27 @@ const NEGLIGIBLE: f64 = 4.0 * f64::EPSILON;
 /// not unique, and no contact is closed.
 const NEAR_CENTRE: f64 = 1e-9;
 
+/// A curve at its point closest to a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClosestPoint {
+    /// The signed distance of the place, positive to the left of the curve.
+    pub distance: f64,
+    /// The unit normal to the left.
+    pub normal: PlanePoint,
+    /// The curvature of the curve (1/length), positive where it turns left.
+    pub curvature: f64,
+}
+
 /// The boxes of a binary tree over the pieces: a box, then those of the first half, then those of the second.
-pub(super) fn boxes(pieces: &[[Point; 4]]) -> Vec<Bounds> {
+pub(super) fn boxes(pieces: &[[PlanePoint; 4]]) -> Vec<PlaneBox> {
     let mut boxes = Vec::with_capacity(2 * pieces.len());
     append_boxes(pieces, &mut boxes);
     boxes
 }
 
-fn append_boxes(pieces: &[[Point; 4]], boxes: &mut Vec<Bounds>) {
+fn append_boxes(pieces: &[[PlanePoint; 4]], boxes: &mut Vec<PlaneBox>) {
     let place = boxes.len();
-    boxes.push(pieces.iter().map(|piece| Bounds::of(piece)).reduce(|a, b| a.joined(&b)).unwrap_or(NOWHERE));
+    boxes.push(pieces.iter().map(|piece| PlaneBox::of(piece)).reduce(|a, b| a.joined(&b)).unwrap_or(NOWHERE));
     if pieces.len() > 1 {
         let (first, second) = pieces.split_at(pieces.len() / 2);
         append_boxes(first, boxes);
@@ -36,7 +47,7 @@ fn append_boxes(pieces: &[[Point; 4]], boxes: &mut Vec<Bounds>) {
     debug_assert!(boxes.len() == place + size_of_tree(pieces.len()));
 }
 
-const NOWHERE: Bounds = Bounds { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
+const NOWHERE: PlaneBox = PlaneBox { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
 
 /// Number of boxes of a tree over so many pieces.
 fn size_of_tree(pieces: usize) -> usize {
@@ -44,60 +55,54 @@ fn size_of_tree(pieces: usize) -> usize {
 }
 
 /// The best so far: the distance, and where.
-struct Best {
+struct NearestFoot {
     distance: f64,
-    found: Found,
+    found: Foot,
 }
 
 #[derive(Clone, Copy)]
-enum Found {
+enum Foot {
     OnPiece { piece: usize, t: f64 },
-    OnRay { ray: usize, along: f64 },
+    OnRay { foot: PlanePoint, direction: PlanePoint },
 }
 
-impl PlaneCurve {
-    /// The curve at its point closest to a place; of equally close points, one that follows from the place alone.
-    pub fn closest(&self, place: Point) -> ClosestPoint {
-        let mut best = Best { distance: f64::INFINITY, found: Found::OnPiece { piece: 0, t: 0.0 } };
-        for (ray, Ray { start, outwards }) in self.rays.iter().flatten().enumerate() {
-            let along = dot(minus(place, *start), *outwards);
-            if along > 0.0 {
-                best.try_at(size(minus(place, plus(*start, along, *outwards))), Found::OnRay { ray, along });
-            }
-        }
-        self.search(place, 0, 0..self.pieces.len(), &mut best);
-        match best.found {
-            Found::OnPiece { piece, t } => at_piece(&self.pieces[piece], t, place),
-            Found::OnRay { ray, along } => self.at_ray(ray, along, place),
+/// See [`PlaneCurve::closest`].
+pub(super) fn closest(curve: &PlaneCurve, place: PlanePoint) -> ClosestPoint {
+    let mut best = NearestFoot { distance: f64::INFINITY, found: Foot::OnPiece { piece: 0, t: 0.0 } };
+    for (ray, EndRay { start, outwards }) in curve.rays.iter().flatten().enumerate() {
+        let along = dot(minus(place, *start), *outwards);
+        if along > 0.0 {
+            // The ray before the curve leads against its direction.
+            let direction = if ray == 0 { outwards.map(|part| -part) } else { *outwards };
+            let foot = plus(*start, along, *outwards);
+            best.try_at(size(minus(place, foot)), Foot::OnRay { foot, direction });
         }
     }
-
-    fn search(&self, place: Point, tree: usize, pieces: std::ops::Range<usize>, best: &mut Best) {
-        if self.boxes[tree].distance(place) >= best.distance {
-            return;
-        }
-        if pieces.len() == 1 {
-            best.try_piece(pieces.start, &self.pieces[pieces.start], place);
-            return;
-        }
-        let middle = pieces.start + pieces.len() / 2;
-        let first = (tree + 1, pieces.start..middle);
-        let second = (tree + 1 + size_of_tree(first.1.len()), middle..pieces.end);
-        let distances = [&first, &second].map(|(tree, _)| self.boxes[*tree].distance(place));
-        let order = if distances[0] <= distances[1] { [first, second] } else { [second, first] };
-        for (tree, pieces) in order {
-            self.search(place, tree, pieces, best);
+    search(curve, place, 0, 0..curve.pieces.len(), &mut best);
+    match best.found {
+        Foot::OnPiece { piece, t } => at_piece(&curve.pieces[piece], t, place),
+        Foot::OnRay { foot, direction } => {
+            let normal = [-direction[1], direction[0]];
+            ClosestPoint { distance: dot(normal, minus(place, foot)), normal, curvature: 0.0 }
         }
     }
+}
 
-    fn at_ray(&self, ray: usize, along: f64, place: Point) -> ClosestPoint {
-        let rays = self.rays.unwrap_or([Ray { start: [0.0; 2], outwards: [1.0, 0.0] }; 2]);
-        let Ray { start, outwards } = rays[ray];
-        // The ray before the curve leads against its direction.
-        let direction = if ray == 0 { outwards.map(|part| -part) } else { outwards };
-        let normal = [-direction[1], direction[0]];
-        let distance = dot(normal, minus(place, plus(start, along, outwards)));
-        ClosestPoint { distance, normal, curvature: 0.0 }
+fn search(curve: &PlaneCurve, place: PlanePoint, tree: usize, pieces: std::ops::Range<usize>, best: &mut NearestFoot) {
+    if curve.boxes[tree].distance(place) >= best.distance {
+        return;
+    }
+    if pieces.len() == 1 {
+        best.try_piece(pieces.start, &curve.pieces[pieces.start], place);
+        return;
+    }
+    let middle = pieces.start + pieces.len() / 2;
+    let first = (tree + 1, pieces.start..middle);
+    let second = (tree + 1 + size_of_tree(first.1.len()), middle..pieces.end);
+    let distances = [&first, &second].map(|(tree, _)| curve.boxes[*tree].distance(place));
+    let order = if distances[0] <= distances[1] { [first, second] } else { [second, first] };
+    for (tree, pieces) in order {
+        search(curve, place, tree, pieces, best);
     }
 }
 
@@ -108,7 +113,7 @@ impl ClosestPoint {
     }
 }
 
-fn at_piece(piece: &[Point; 4], t: f64, place: Point) -> ClosestPoint {
+fn at_piece(piece: &[PlanePoint; 4], t: f64, place: PlanePoint) -> ClosestPoint {
     let [foot, slope, bend] = at(piece, t);
     let speed = size(slope);
     let normal = [-slope[1] / speed, slope[0] / speed];
@@ -116,17 +121,17 @@ fn at_piece(piece: &[Point; 4], t: f64, place: Point) -> ClosestPoint {
     ClosestPoint { distance: dot(normal, minus(place, foot)), normal, curvature }
 }
 
-impl Best {
-    fn try_at(&mut self, distance: f64, found: Found) {
+impl NearestFoot {
+    fn try_at(&mut self, distance: f64, found: Foot) {
         if distance < self.distance {
             *self = Self { distance, found };
         }
     }
 
-    fn try_piece(&mut self, number: usize, piece: &[Point; 4], place: Point) {
+    fn try_piece(&mut self, number: usize, piece: &[PlanePoint; 4], place: PlanePoint) {
         let mut try_at = |t: f64| {
             let distance = size(minus(place, at(piece, t)[0]));
-            self.try_at(distance, Found::OnPiece { piece: number, t });
+            self.try_at(distance, Foot::OnPiece { piece: number, t });
         };
         try_at(0.0);
         try_at(1.0);
@@ -150,7 +155,7 @@ impl Best {
 }
 
 /// The Bernstein coefficients of `(C - p)·C'/3`.
-fn coefficients(piece: &[Point; 4], place: Point) -> [f64; 6] {
+fn coefficients(piece: &[PlanePoint; 4], place: PlanePoint) -> [f64; 6] {
     const OF_THREE: [f64; 4] = [1.0, 3.0, 3.0, 1.0];
     const OF_TWO: [f64; 3] = [1.0, 2.0, 1.0];
     const OF_FIVE: [f64; 6] = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
@@ -166,7 +171,7 @@ fn coefficients(piece: &[Point; 4], place: Point) -> [f64; 6] {
 }
 
 /// A bound on the terms of these coefficients.
-fn largest_product(piece: &[Point; 4], place: Point) -> f64 {
+fn largest_product(piece: &[PlanePoint; 4], place: PlanePoint) -> f64 {
     let far = piece.iter().map(|point| size(minus(*point, place))).fold(0.0, f64::max);
     let fast = piece.windows(2).map(|ends| size(minus(ends[1], ends[0]))).fold(0.0, f64::max);
     far * fast

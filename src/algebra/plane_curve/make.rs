@@ -1,6 +1,6 @@
 //! Curves from points.
 
-use crate::algebra::plane_curve::{CurveMistake, PlaneCurve, Point, Ray, at, closest, cross, dot, minus, plus, size};
+use crate::algebra::plane_curve::{CurveMistake, PlanePoint, cross, dot, minus, plus, size};
 
 /// Points closer than this, relative to the extent of all, coincide.
 const COINCIDENT: f64 = 1e-12;
@@ -9,87 +9,62 @@ const COINCIDENT: f64 = 1e-12;
 /// less than a hundredth of its rounding.
 const TURNS_BACK: f64 = -0.984_807_753_012_208;
 
-impl PlaneCurve {
-    /// The curve of a polyline: with [rounded](Self::rounded) corners, or [through](Self::through) its points where no
-    /// rounding is given.
-    ///
-    /// # Errors
-    /// As those two.
-    pub fn of_polyline(points: &[Point], closed: bool, rounding: Option<f64>) -> Result<Self, CurveMistake> {
-        match rounding {
-            Some(rounding) => Self::rounded(points, closed, rounding),
-            None => Self::through(points, closed),
+/// The pieces of the cubic spline.
+pub(super) fn through(points: &[PlanePoint], closed: bool) -> Result<Vec<[PlanePoint; 4]>, CurveMistake> {
+    let edges = PolylineEdges::of(points, closed)?;
+    let bends = edges.bends(closed);
+    let pieces = (0..edges.lengths.len()).map(|edge| {
+        let next = (edge + 1) % points.len();
+        let (length, chord) = (edges.lengths[edge], edges.directions[edge]);
+        let (first, last) = (bends[edge], bends[next]);
+        let leaves = plus(chord, -length / 6.0, plus(last, 2.0, first));
+        let arrives = plus(chord, length / 6.0, plus(first, 2.0, last));
+        let (start, end) = (points[edge], points[next]);
+        [start, plus(start, length / 3.0, leaves), plus(end, -length / 3.0, arrives), end]
+    });
+    Ok(pieces.collect())
+}
+
+/// The pieces of the polygon with rounded corners.
+pub(super) fn rounded(
+    points: &[PlanePoint],
+    closed: bool,
+    rounding: f64,
+) -> Result<Vec<[PlanePoint; 4]>, CurveMistake> {
+    let edges = PolylineEdges::of(points, closed)?;
+    let count = edges.lengths.len();
+    let mut pieces = Vec::with_capacity(3 * count);
+    for edge in 0..count {
+        let next = (edge + 1) % points.len();
+        let (has_corner_before, has_corner_after) = (closed || edge > 0, closed || edge + 1 < count);
+        let most = edges.lengths[edge] / (1 + usize::from(has_corner_before && has_corner_after)) as f64;
+        if (has_corner_before || has_corner_after) && rounding > most {
+            return Err(CurveMistake::NoRoom { point: if has_corner_after { next } else { edge }, most });
+        }
+        let along = edges.directions[edge];
+        let start = plus(points[edge], if has_corner_before { rounding } else { 0.0 }, along);
+        let end = plus(points[next], if has_corner_after { -rounding } else { 0.0 }, along);
+        let straight = minus(end, start);
+        if dot(straight, along) > COINCIDENT * edges.lengths[edge] {
+            pieces.push([start, plus(start, 1.0 / 3.0, straight), plus(start, 2.0 / 3.0, straight), end]);
+        }
+        if has_corner_after {
+            pieces.extend(corner(end, points[next], along, edges.directions[next], rounding));
         }
     }
-
-    /// The cubic spline through points, its parameter the length of the chords: natural at the ends of an open curve,
-    /// so that the curvature is 0 there; periodic where the curve is closed.
-    ///
-    /// # Errors
-    /// Too few points, coincident neighbours, a turn back, a curve that crosses itself.
-    pub fn through(points: &[Point], closed: bool) -> Result<Self, CurveMistake> {
-        let edges = Edges::of(points, closed)?;
-        let bends = edges.bends(closed);
-        let pieces = (0..edges.lengths.len()).map(|edge| {
-            let next = (edge + 1) % points.len();
-            let (length, chord) = (edges.lengths[edge], edges.directions[edge]);
-            let (first, last) = (bends[edge], bends[next]);
-            let leaves = plus(chord, -length / 6.0, plus(last, 2.0, first));
-            let arrives = plus(chord, length / 6.0, plus(first, 2.0, last));
-            let (start, end) = (points[edge], points[next]);
-            [start, plus(start, length / 3.0, leaves), plus(end, -length / 3.0, arrives), end]
-        });
-        Self::of_pieces(pieces.collect(), closed)
-    }
-
-    /// The straight edges between points, each corner rounded off from the given distance before it to the same distance
-    /// behind it, by two pieces of a uniform cubic B-spline.
-    ///
-    /// # Errors
-    /// Too few points, coincident neighbours, a turn back, a rounding longer than half an edge, a curve that crosses
-    /// itself.
-    pub fn rounded(points: &[Point], closed: bool, rounding: f64) -> Result<Self, CurveMistake> {
-        let edges = Edges::of(points, closed)?;
-        let count = edges.lengths.len();
-        let mut pieces = Vec::with_capacity(3 * count);
-        for edge in 0..count {
-            let next = (edge + 1) % points.len();
-            let (has_corner_before, has_corner_after) = (closed || edge > 0, closed || edge + 1 < count);
-            let most = edges.lengths[edge] / (1 + usize::from(has_corner_before && has_corner_after)) as f64;
-            if (has_corner_before || has_corner_after) && rounding > most {
-                return Err(CurveMistake::NoRoom { point: if has_corner_after { next } else { edge }, most });
-            }
-            let along = edges.directions[edge];
-            let start = plus(points[edge], if has_corner_before { rounding } else { 0.0 }, along);
-            let end = plus(points[next], if has_corner_after { -rounding } else { 0.0 }, along);
-            let straight = minus(end, start);
-            if dot(straight, along) > COINCIDENT * edges.lengths[edge] {
-                pieces.push([start, plus(start, 1.0 / 3.0, straight), plus(start, 2.0 / 3.0, straight), end]);
-            }
-            if has_corner_after {
-                pieces.extend(corner(end, points[next], along, edges.directions[next], rounding));
-            }
-        }
-        Self::of_pieces(pieces, closed)
-    }
-
-    fn of_pieces(pieces: Vec<[Point; 4]>, closed: bool) -> Result<Self, CurveMistake> {
-        let ray = |place: [Point; 3], sign: f64| {
-            let length = sign * size(place[1]);
-            Ray { start: place[0], outwards: place[1].map(|part| part / length) }
-        };
-        let ends = || [ray(at(&pieces[0], 0.0), -1.0), ray(at(&pieces[pieces.len() - 1], 1.0), 1.0)];
-        let rays = (!closed).then(ends);
-        let boxes = closest::boxes(&pieces);
-        let curve = Self { pieces, boxes, rays };
-        curve.crossing().map_or(Ok(curve), |near| Err(CurveMistake::Crosses { near }))
-    }
+    Ok(pieces)
 }
 
 /// The two pieces that round off a corner between its neighbouring edges, of directions `before` and `after`.
-fn corner(start: Point, corner: Point, before: Point, after: Point, rounding: f64) -> [[Point; 4]; 2] {
+fn corner(
+    start: PlanePoint,
+    corner: PlanePoint,
+    before: PlanePoint,
+    after: PlanePoint,
+    rounding: f64,
+) -> [[PlanePoint; 4]; 2] {
     let end = plus(corner, rounding, after);
-    let between = |a: Point, b: Point| plus(a, 1.0 / 3.0, minus(b, a));
+    let between = |a: PlanePoint, b: PlanePoint| plus(a, 1.0 / 3.0, minus(b, a));
     let middle = [0, 1].map(|k| corner[k] + rounding / 6.0 * (after[k] - before[k]));
     [
         [start, between(start, corner), between(corner, start), middle],
@@ -98,14 +73,14 @@ fn corner(start: Point, corner: Point, before: Point, after: Point, rounding: f6
 }
 
 /// The edges between points.
-struct Edges {
+struct PolylineEdges {
     lengths: Vec<f64>,
     /// Unit vectors.
-    directions: Vec<Point>,
+    directions: Vec<PlanePoint>,
 }
 
-impl Edges {
-    fn of(points: &[Point], closed: bool) -> Result<Self, CurveMistake> {
+impl PolylineEdges {
+    fn of(points: &[PlanePoint], closed: bool) -> Result<Self, CurveMistake> {
         let needed = if closed { 3 } else { 2 };
         if points.len() < needed {
             return Err(CurveMistake::TooFew { needed });
@@ -133,7 +108,7 @@ impl Edges {
     }
 
     /// The second derivatives of the spline at its points.
-    fn bends(&self, closed: bool) -> Vec<Point> {
+    fn bends(&self, closed: bool) -> Vec<PlanePoint> {
         let count = self.lengths.len();
         let jump = |edge: usize| {
             let before = (edge + count - 1) % count;
@@ -141,7 +116,7 @@ impl Edges {
         };
         let diagonal = |edge: usize| 2.0 * (self.lengths[(edge + count - 1) % count] + self.lengths[edge]);
         if !closed {
-            let inner: Vec<Point> = (1..count).map(jump).collect();
+            let inner: Vec<PlanePoint> = (1..count).map(jump).collect();
             let diagonals: Vec<f64> = (1..count).map(diagonal).collect();
             let beside = &self.lengths[1..];
             let inner = solve_tridiagonal(&diagonals, beside, inner);
@@ -158,7 +133,7 @@ impl Edges {
         let beside = &self.lengths[..count - 1];
         let mut bends = solve_tridiagonal(&diagonals, beside, (0..count).map(jump).collect());
         let by_corner = solve_tridiagonal(&diagonals, beside, unit);
-        let ends = |values: &[Point]| plus(values[0], 1.0, values[count - 1]);
+        let ends = |values: &[PlanePoint]| plus(values[0], 1.0, values[count - 1]);
         let factor = corner / (1.0 + corner * ends(&by_corner)[0]);
         let weights = ends(&bends).map(|part| factor * part);
         bends.iter_mut().zip(&by_corner).for_each(|(bend, column)| {
@@ -170,7 +145,7 @@ impl Edges {
 
 /// Solves a symmetric diagonally dominant tridiagonal system for two columns; `beside` are the entries beside the
 /// diagonal.
-fn solve_tridiagonal(diagonals: &[f64], beside: &[f64], mut columns: Vec<Point>) -> Vec<Point> {
+fn solve_tridiagonal(diagonals: &[f64], beside: &[f64], mut columns: Vec<PlanePoint>) -> Vec<PlanePoint> {
     let mut pivots = diagonals.to_vec();
     for row in 1..pivots.len() {
         let factor = beside[row - 1] / pivots[row - 1];
@@ -187,7 +162,7 @@ fn solve_tridiagonal(diagonals: &[f64], beside: &[f64], mut columns: Vec<Point>)
 }
 
 /// Twice the area that a closed polygon encloses, positive where it runs counter-clockwise.
-pub fn doubled_area(points: &[Point]) -> f64 {
+pub fn doubled_area(points: &[PlanePoint]) -> f64 {
     let Some(origin) = points.first() else { return 0.0 };
     points.windows(2).map(|edge| cross(minus(edge[0], *origin), minus(edge[1], *origin))).sum()
 }

@@ -1,6 +1,6 @@
-use crate::algebra::plane_curve::{CurveMistake, PlaneCurve, Point};
+use crate::algebra::plane_curve::{CurveMistake, PlaneCurve, PlanePoint};
 
-fn circle(count: usize) -> Vec<Point> {
+fn circle(count: usize) -> Vec<PlanePoint> {
     (0..count).map(|k| (std::f64::consts::TAU * k as f64 / count as f64).sin_cos()).map(|(y, x)| [x, y]).collect()
 }
 
@@ -25,7 +25,7 @@ fn the_spline_through_a_circle_converges_to_it_with_the_fourth_order() {
 /// The gradient of the distance is the normal, and the normal turns as the curvature says, everywhere near the curve.
 #[test]
 fn distance_normal_and_curvature_agree_with_differences() {
-    let zigzag: [Point; 5] = [[-1.0, 0.0], [0.0, 0.0], [0.5, 0.7], [1.5, 0.6], [2.0, -0.4]];
+    let zigzag: [PlanePoint; 5] = [[-1.0, 0.0], [0.0, 0.0], [0.5, 0.7], [1.5, 0.6], [2.0, -0.4]];
     let curves = [
         PlaneCurve::rounded(&zigzag, false, 0.3).unwrap(),
         PlaneCurve::through(&zigzag, false).unwrap(),
@@ -67,7 +67,7 @@ fn distance_normal_and_curvature_agree_with_differences() {
 
 #[test]
 fn the_closest_point_is_the_closest_of_many() {
-    let points: Vec<Point> = (0..40).map(|k| [0.1 * f64::from(k), (0.9 * f64::from(k)).sin()]).collect();
+    let points: Vec<PlanePoint> = (0..40).map(|k| [0.1 * f64::from(k), (0.9 * f64::from(k)).sin()]).collect();
     let curve = PlaneCurve::through(&points, false).unwrap();
     for k in 0..200 {
         let place = [0.5 + 0.015 * f64::from(k), (1.7 * f64::from(k)).cos() * 1.3];
@@ -95,7 +95,7 @@ fn points_that_give_no_curve_are_refused() {
     let corner = |rounding| PlaneCurve::rounded(&[[0.0, 0.0], [1.0, 0.0], [1.0, 3.0], [4.0, 3.0]], false, rounding);
     assert!(corner(1.0).is_ok());
     assert_eq!(corner(1.2).unwrap_err(), CurveMistake::NoRoom { point: 1, most: 1.0 });
-    let through = |points: &[Point], closed| PlaneCurve::through(points, closed).unwrap_err();
+    let through = |points: &[PlanePoint], closed| PlaneCurve::through(points, closed).unwrap_err();
     assert_eq!(through(&[[0.0, 0.0]], false), CurveMistake::TooFew { needed: 2 });
     assert_eq!(through(&[[0.0, 0.0], [1.0, 0.0]], true), CurveMistake::TooFew { needed: 3 });
     assert_eq!(through(&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0]], false), CurveMistake::Coincident { point: 2 });

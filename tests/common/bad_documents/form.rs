@@ -103,8 +103,12 @@ pub fn wrong_form() -> Vec<BadDocument> {
             "unknown field `point` of a ball; known: `kind`, `center`",
         )
         .told("/model/obstacles/floor/point"),
-        ball_with("unknown side", json!({"side": "inner"}), "not a side of a ball; known: `outside`, `inside`")
-            .told("/model/obstacles/floor/side"),
+        ball_with(
+            "unknown side",
+            json!({"side": "inner"}),
+            "not a side of a closed obstacle; known: `outside`, `inside`",
+        )
+        .told("/model/obstacles/floor/side"),
         ball_with("radius as a string", json!({"radius": "1"}), "found the string `1`; a number")
             .told("/model/obstacles/floor/radius"),
         ball_with("center as an object", json!({"center": {}}), "found an object; an array")
@@ -132,7 +136,7 @@ pub fn wrong_form() -> Vec<BadDocument> {
 
 pub fn not_available() -> Vec<BadDocument> {
     vec![
-        at("segment", "/model/obstacles/floor/kind", json!("segment"), "`plane`, `ball` would do"),
-        at("box", "/model/obstacles/floor/kind", json!("box"), "`plane`, `ball` would do"),
+        at("segment", "/model/obstacles/floor/kind", json!("segment"), "`plane`, `ball`, `polyline` would do"),
+        at("box", "/model/obstacles/floor/kind", json!("box"), "`plane`, `ball`, `polyline` would do"),
     ]
 }

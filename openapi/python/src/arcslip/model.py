@@ -212,6 +212,25 @@ class Model:
         """Adds a circle or sphere as obstacle; nodes stay `"outside"` or `"inside"` of it."""
         return self._obstacle(name, {"kind": "ball", "center": plain(center), "radius": plain(radius), "side": side})
 
+    def polyline(
+        self,
+        name: str,
+        points: Sequence[Vector],
+        *,
+        closed: bool = False,
+        rounding: Optional[float] = None,
+        side: Optional[str] = None,
+    ) -> str:
+        """Adds a curve in the plane as obstacle: the cubic spline through points, or with a `rounding` straight edges
+        with corners rounded off within that length. An open one is free to the left of its direction; of a closed one
+        nodes stay `"outside"` or `"inside"`."""
+        obstacle: Dict[str, Any] = {"kind": "polyline", "points": plain(points), "closed": closed}
+        if rounding is not None:
+            obstacle["rounding"] = plain(rounding)
+        if side is not None:
+            obstacle["side"] = side
+        return self._obstacle(name, obstacle)
+
     def _obstacle(self, name: str, obstacle: Dict[str, Any]) -> str:
         if name in self._obstacles:
             raise ValueError(f"there is an obstacle {name!r} already")

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::algebra::plane_curve::make::doubled_area;
-use crate::algebra::plane_curve::{CurveMistake, PlaneCurve, Point};
+use crate::algebra::plane_curve::{CurveMistake, PlaneCurve, PlanePoint};
 use crate::model::request::structure::obstacle::Side;
 
 /// A rigid obstacle in the plane along a smooth curve through points. The free side of an open polyline is to the left
@@ -41,13 +41,13 @@ impl Polyline {
     }
 
     /// The first point, from which [`Self::curve`] measures: far from the origin no digits are lost.
-    pub(crate) fn origin(&self) -> Point {
+    pub(crate) fn origin(&self) -> PlanePoint {
         self.points.first().map_or([0.0; 2], |point| at(point))
     }
 
     /// The curve relative to the first point, in multiples of a unit of length.
     pub(crate) fn curve(&self, unit: f64) -> Result<PlaneCurve, CurveMistake> {
-        let points: Vec<Point> = self.relative().map(|place| place.map(|part| part / unit)).collect();
+        let points: Vec<PlanePoint> = self.relative().map(|place| place.map(|part| part / unit)).collect();
         PlaneCurve::of_polyline(&points, self.closed, self.rounding.map(|rounding| rounding / unit))
     }
 
@@ -56,12 +56,12 @@ impl Polyline {
         if !self.closed {
             return 1.0;
         }
-        let points: Vec<Point> = self.relative().collect();
+        let points: Vec<PlanePoint> = self.relative().collect();
         let is_left_inside = doubled_area(&points) > 0.0;
         if is_left_inside == (self.side == Some(Side::Inside)) { 1.0 } else { -1.0 }
     }
 
-    fn relative(&self) -> impl Iterator<Item = Point> {
+    fn relative(&self) -> impl Iterator<Item = PlanePoint> {
         let origin = self.origin();
         self.points.iter().map(move |point| {
             let [x, y] = at(point);
@@ -71,6 +71,6 @@ impl Polyline {
 }
 
 /// The first two coordinates; 0 where there are fewer.
-fn at(point: &[f64]) -> Point {
+fn at(point: &[f64]) -> PlanePoint {
     [0, 1].map(|k| point.get(k).copied().unwrap_or(0.0))
 }

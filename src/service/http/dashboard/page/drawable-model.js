@@ -2,7 +2,7 @@
 
 import { SOLIDS } from "./structure-solids.js";
 
-const KINDS = ["plane", "ball"];
+const KINDS = ["plane", "ball", "polyline"];
 /** The most sentences; the others are counted. */
 const SENTENCES = 8;
 
@@ -111,12 +111,21 @@ function parts(reading, given, nodes) {
 }
 
 function obstacleProblem(reading, obstacle) {
-  if (!KINDS.includes(obstacle?.kind)) return "its kind has to be plane or ball";
+  if (!KINDS.includes(obstacle?.kind)) return "its kind has to be plane, ball or polyline";
   if (obstacle.kind === "ball") {
     return obstacle.radius > 0 ? reading.vectorOr(obstacle.center) : "its radius has to be a number above 0";
   }
+  if (obstacle.kind === "polyline") return polylineProblem(reading, obstacle);
   const isDirection = reading.isVector(obstacle.normal) && obstacle.normal.some((value) => value !== 0);
   return isDirection ? reading.vectorOr(obstacle.point) : "its normal has to be a direction";
+}
+
+function polylineProblem(reading, { points, closed, rounding }) {
+  const least = closed ? 3 : 2;
+  if (reading.dimension !== 2) return "a polyline is an obstacle in the plane";
+  if (listOf(points).length < least) return `it has to have ${least} points or more`;
+  if (rounding !== undefined && !(rounding > 0)) return "its rounding has to be a number above 0";
+  return listOf(points).map((point) => reading.vectorOr(point)).find(Boolean) ?? null;
 }
 
 /** How many nodes an element of a kind may have. */

@@ -1,5 +1,7 @@
 // Positions and forces of a structure at an increment, in the coordinates of the model.
 
+import { normalOfCurve } from "./plane-curve.js";
+
 const plus = (a, b, factor = 1) => a.map((value, place) => value + factor * (b[place] ?? 0));
 const times = (a, factor) => a.map((value) => value * factor);
 const dot = (a, b) => a.reduce((sum, value, place) => sum + value * b[place], 0);
@@ -35,6 +37,7 @@ export function acting(model, increment, reached, member) {
 export function frame(obstacle, place, moved = []) {
   let normal;
   if (obstacle.kind === "plane") normal = unit(obstacle.normal);
+  else if (obstacle.kind === "polyline") normal = normalOfCurve(obstacle, plus(place, moved, -1));
   else {
     const out = unit(plus(place, plus(obstacle.center, moved), -1));
     normal = obstacle.side === "inside" ? times(out, -1) : out;

@@ -2,6 +2,7 @@
 // touch them.
 
 import { frame, vector } from "./geometry.js";
+import { planeCurve } from "./plane-curve.js";
 import { fromSheet } from "./plot-style.js";
 import { components } from "./units.js";
 
@@ -30,7 +31,7 @@ export class ObstacleDrawing {
   draw(name, obstacle) {
     const { traces, extent } = this;
     const before = traces.reach.length;
-    const middle = extent.isWhole(obstacle) ? this.ball(name, obstacle) : this.part(name, obstacle);
+    const middle = this.shape(name, obstacle);
     if (!traces.reach.slice(before).some((place) => extent.isNear(place, NEAR))) {
       // Not to push the structure into a corner.
       traces.reach.length = before;
@@ -43,6 +44,12 @@ export class ObstacleDrawing {
     traces.arrow("motion of an obstacle", middle, to, fromSheet("--obstacle"), {
       words: `${name} moves by ${components(motion, this.units.length)}`, isAtHead: true,
     });
+  }
+
+  /** Draws an obstacle; answers a place on it. */
+  shape(name, obstacle) {
+    if (obstacle.kind === "polyline") return this.curve(name, obstacle);
+    return this.extent.isWhole(obstacle) ? this.ball(name, obstacle) : this.part(name, obstacle);
   }
 
   /** The nodes that may touch an obstacle, where they were and where they are. */
@@ -78,6 +85,33 @@ export class ObstacleDrawing {
     traces.lines("obstacle", [edges], this.line, name);
     traces.area(edges, fromSheet("--ground"));
     return surface.on([between(first, SIDE / 2), between(second, SIDE / 2)]);
+  }
+
+  /** The parts of a curve near the structure; answers a place on it. */
+  curve(name, obstacle) {
+    const { extent, traces } = this;
+    const { places, outwards } = planeCurve(obstacle);
+    const shifted = places.map(({ place, normal }) => ({ place: plus(place, this.moved.get(name) ?? []), normal }));
+    const onwards = ({ place, normal }, way) => [...Array(SIDE).keys()].map((step) =>
+      ({ place: plus(place, way, ((step + 1) * extent.size) / SIDE), normal }));
+    if (outwards.length) {
+      shifted.unshift(...onwards(shifted[0], outwards[0]).reverse());
+      shifted.push(...onwards(shifted.at(-1), outwards[1]));
+    }
+    const isNear = ({ place }) => extent.isNear(place, ALONE);
+    const runs = shifted.reduce((found, at) => {
+      if (!isNear(at)) found.push([]);
+      else found.at(-1).push(at);
+      return found;
+    }, [[]]).filter((run) => run.length > 1);
+    for (const run of runs) {
+      const edge = run.map(({ place }) => place);
+      traces.lines("obstacle", [edge], this.line, name);
+      const below = ({ place, normal }) => plus(place, normal, -DEEP * extent.size);
+      traces.area([...edge, ...run.map(below).reverse()], fromSheet("--ground"));
+    }
+    const longest = runs.reduce((best, run) => (run.length > best.length ? run : best), []);
+    return (longest[Math.floor(longest.length / 2)] ?? shifted[0]).place;
   }
 
   /** A ball as a whole; answers its centre. */

@@ -14,21 +14,21 @@ const SWEEPS: usize = 120;
 const SAMPLES: usize = 32;
 const HALVINGS: usize = 60;
 
-type Place = Vector2<f64>;
+type PlanePlace = Vector2<f64>;
 
 /// `c0 + c1 t + c2 t² + c3 t³`, `0 <= t <= 1`; the distance from `c0` is at most `reach`.
 #[derive(Debug, Clone)]
-struct Piece {
-    coefficients: [Place; 4],
+struct MeasuredPiece {
+    coefficients: [PlanePlace; 4],
     reach: f64,
 }
 
 /// The curve of a polyline, and its rays where it is open: their starts and outward unit directions.
 #[derive(Debug, Clone)]
 pub(super) struct MeasuredCurve {
-    origin: Place,
-    pieces: Vec<Piece>,
-    rays: Vec<(Place, Place)>,
+    origin: PlanePlace,
+    pieces: Vec<MeasuredPiece>,
+    rays: Vec<(PlanePlace, PlanePlace)>,
     /// 1 where the left of the curve is free, otherwise -1.
     sign: f64,
     /// The largest coordinate of the points.
@@ -37,9 +37,9 @@ pub(super) struct MeasuredCurve {
 
 impl MeasuredCurve {
     pub fn new(posted: &Polyline) -> Self {
-        let at = |point: &Vec<f64>| Place::new(point[0], point[1]);
-        let origin = posted.points.first().map_or_else(Place::zeros, at);
-        let points: Vec<Place> = posted.points.iter().map(|point| at(point) - origin).collect();
+        let at = |point: &Vec<f64>| PlanePlace::new(point[0], point[1]);
+        let origin = posted.points.first().map_or_else(PlanePlace::zeros, at);
+        let points: Vec<PlanePlace> = posted.points.iter().map(|point| at(point) - origin).collect();
         let pieces = match posted.rounding {
             Some(rounding) => rounded(&points, posted.closed, rounding),
             None => through(&points, posted.closed),
@@ -57,9 +57,9 @@ impl MeasuredCurve {
 
     /// The gap at a place, and the unit normal into the free side.
     pub fn gap(&self, place: [f64; 2]) -> (f64, [f64; 2]) {
-        let place = Place::new(place[0], place[1]) - self.origin;
-        let mut best = (f64::INFINITY, Place::zeros(), Place::x());
-        let mut try_at = |foot: Place, along: Place| {
+        let place = PlanePlace::new(place[0], place[1]) - self.origin;
+        let mut best = (f64::INFINITY, PlanePlace::zeros(), PlanePlace::x());
+        let mut try_at = |foot: PlanePlace, along: PlanePlace| {
             let distance = (place - foot).norm();
             if distance < best.0 {
                 best = (distance, foot, along);
@@ -77,34 +77,34 @@ impl MeasuredCurve {
             }
         }
         let (_, foot, along) = best;
-        let normal = Place::new(-along.y, along.x) * (self.sign / along.norm());
+        let normal = PlanePlace::new(-along.y, along.x) * (self.sign / along.norm());
         ((place - foot).dot(&normal), [normal.x, normal.y])
     }
 }
 
-impl Piece {
-    fn new(coefficients: [Place; 4]) -> Self {
-        Self { reach: coefficients[1..].iter().map(Place::norm).sum(), coefficients }
+impl MeasuredPiece {
+    fn new(coefficients: [PlanePlace; 4]) -> Self {
+        Self { reach: coefficients[1..].iter().map(PlanePlace::norm).sum(), coefficients }
     }
 
     /// From its ends and the slopes there.
-    fn between(start: Place, end: Place, leaves: Place, arrives: Place) -> Self {
+    fn between(start: PlanePlace, end: PlanePlace, leaves: PlanePlace, arrives: PlanePlace) -> Self {
         let chord = end - start;
         Self::new([start, leaves, chord * 3.0 - leaves * 2.0 - arrives, leaves + arrives - chord * 2.0])
     }
 
-    fn place(&self, t: f64) -> Place {
+    fn place(&self, t: f64) -> PlanePlace {
         let [a, b, c, d] = &self.coefficients;
         a + (b + (c + d * t) * t) * t
     }
 
-    fn slope(&self, t: f64) -> Place {
+    fn slope(&self, t: f64) -> PlanePlace {
         let [_, b, c, d] = &self.coefficients;
         b + (c * 2.0 + d * (3.0 * t)) * t
     }
 
     /// Calls `each` with the parameters of its ends and of the minima of the distance that sampling shows.
-    fn each_candidate(&self, place: &Place, mut each: impl FnMut(f64)) {
+    fn each_candidate(&self, place: &PlanePlace, mut each: impl FnMut(f64)) {
         let rise = |t: f64| (self.place(t) - place).dot(&self.slope(t));
         each(0.0);
         each(1.0);
@@ -122,17 +122,17 @@ impl Piece {
     }
 }
 
-fn through(points: &[Place], closed: bool) -> Vec<Piece> {
+fn through(points: &[PlanePlace], closed: bool) -> Vec<MeasuredPiece> {
     let count = points.len();
     let edges = if closed { count } else { count - 1 };
-    let chords: Vec<Place> = (0..edges).map(|edge| points[(edge + 1) % count] - points[edge]).collect();
-    let lengths: Vec<f64> = chords.iter().map(Place::norm).collect();
-    let mut slopes = vec![Place::zeros(); count];
+    let chords: Vec<PlanePlace> = (0..edges).map(|edge| points[(edge + 1) % count] - points[edge]).collect();
+    let lengths: Vec<f64> = chords.iter().map(PlanePlace::norm).collect();
+    let mut slopes = vec![PlanePlace::zeros(); count];
     for _ in 0..SWEEPS {
         for point in 0..count {
             let before = (closed || point > 0).then(|| (point + count - 1) % count);
             let behind = (closed || point < edges).then(|| (point + 1) % count);
-            let (mut sum, mut weight) = (Place::zeros(), 0.0);
+            let (mut sum, mut weight) = (PlanePlace::zeros(), 0.0);
             for (edge, neighbour) in [(before, before), (behind.map(|_| point), behind)] {
                 let (Some(edge), Some(neighbour)) = (edge, neighbour) else { continue };
                 let length = lengths[edge];
@@ -146,12 +146,12 @@ fn through(points: &[Place], closed: bool) -> Vec<Piece> {
         .map(|edge| {
             let next = (edge + 1) % count;
             let length = lengths[edge];
-            Piece::between(points[edge], points[next], slopes[edge] * length, slopes[next] * length)
+            MeasuredPiece::between(points[edge], points[next], slopes[edge] * length, slopes[next] * length)
         })
         .collect()
 }
 
-fn rounded(points: &[Place], closed: bool, rounding: f64) -> Vec<Piece> {
+fn rounded(points: &[PlanePlace], closed: bool, rounding: f64) -> Vec<MeasuredPiece> {
     let count = points.len();
     let edges = if closed { count } else { count - 1 };
     let direction = |edge: usize| (points[(edge + 1) % count] - points[edge]).normalize();
@@ -164,7 +164,7 @@ fn rounded(points: &[Place], closed: bool, rounding: f64) -> Vec<Piece> {
         let corner = points[(edge + 1) % count];
         let end = corner - along * if ends_round { rounding } else { 0.0 };
         if (end - start).dot(&along) > 0.0 {
-            pieces.push(Piece::between(start, end, end - start, end - start));
+            pieces.push(MeasuredPiece::between(start, end, end - start, end - start));
         }
         if ends_round {
             let onwards = direction((edge + 1) % count);
@@ -182,6 +182,11 @@ fn rounded(points: &[Place], closed: bool, rounding: f64) -> Vec<Piece> {
 }
 
 /// A piece of the uniform cubic B-spline with these control points.
-fn b_spline([p, q, r, s]: [Place; 4]) -> Piece {
-    Piece::new([(p + q * 4.0 + r) / 6.0, (r - p) / 2.0, (p - q * 2.0 + r) / 2.0, (s - r * 3.0 + q * 3.0 - p) / 6.0])
+fn b_spline([p, q, r, s]: [PlanePlace; 4]) -> MeasuredPiece {
+    MeasuredPiece::new([
+        (p + q * 4.0 + r) / 6.0,
+        (r - p) / 2.0,
+        (p - q * 2.0 + r) / 2.0,
+        (s - r * 3.0 + q * 3.0 - p) / 6.0,
+    ])
 }
