@@ -65,8 +65,8 @@ pub struct ContactState {
     /// Force, 0 or more.
     pub normal_reaction: f64,
     /// Force on the node along the obstacle's tangents at the node's place (`dimension - 1` of them): in 2D the normal `n`
-    /// turned clockwise; in 3D the coordinate axis least aligned with `n` (the first of them) made perpendicular to it
-    /// and of unit length, `t`, and `n × t`.
+    /// turned clockwise; in 3D the coordinate axis least aligned with `n` (the first of those within 1e-9) made
+    /// perpendicular to it and of unit length, `t`, and `n × t`.
     #[cfg_attr(feature = "server", schema(value_type = Vec<f64>))]
     pub tangential_reaction: Tangential,
     /// Force of the obstacle on the node in global axes (`dimension` components): normal and tangential reaction together.

@@ -143,3 +143,32 @@ fn touch_and_lift_off_of_a_ball() {
     assert_eq!(events.len(), 2, "touch and lift-off");
     events.iter().for_each(|event| close(event.load_factor, 0.25, 1e-10, "load of an event"));
 }
+
+/// A node in space sticks to the lowest point of a ball that moves sideways: two axes are equally aligned with the normal
+/// there but for round-off, and the tangents of the increments refer to the first of them throughout.
+#[test]
+fn tangents_at_the_apex_of_a_ball_stay_in_order() {
+    let request = typed(json!({
+        "model": {
+            "name": "node under a ball", "dimension": 3, "nodes": {"node": [0, 0, 0]},
+            "elements": [{"kind": "spring", "nodes": ["node"],
+                "stiffness": [[1, 0.1, 0.2], [0.1, 0.9, 0.15], [0.2, 0.15, 1.3]]}],
+            "obstacles": {"ball": {"kind": "ball", "center": [0, 0, 3], "radius": 3}},
+            "contacts": [{"node": "node", "obstacle": "ball", "friction": 5}],
+            "stages": [
+                {"name": "press", "obstacle_motion": {"ball": [0, 0, -0.3]}, "until": {"load_above": 1}},
+                {"name": "push", "obstacle_motion": {"ball": [0.17, 0.05, 0]}, "until": {"load_above": 1}}
+            ]
+        },
+        "analysis": {"arc_length": {"max": 0.03}}
+    }));
+    let (increments, report) = trace(&request);
+    assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+    assert!(increments.len() > 40);
+    for increment in &increments {
+        let contact = &increment.contacts[0];
+        // The normal is -z: the tangents are x, and n × x = -y.
+        close(contact.tangential_reaction[0], contact.reaction[0], 1e-14, "along x");
+        close(contact.tangential_reaction[1], -contact.reaction[1], 1e-14, "along y");
+    }
+}

@@ -1,11 +1,14 @@
 //! Obstacles as posted: their position under a load factor, and their frame at a node, for the measure only.
 //!
 //! A frame is the gap, the unit normal into the free side, and the tangents: in 2D `(n_y, -n_x)`; in 3D
-//! `t1 = (e_k - n_k n)/|.|` with `k` the first index of the smallest `|n_k|`, and `t2 = n x t1`.
+//! `t1 = (e_k - n_k n)/|.|` with `k` the first index whose `|n_k|` is the smallest within 1e-9, and `t2 = n x t1`.
 
 use crate::check::measure::polylines::MeasuredCurve;
 use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::model::request::{Obstacle as Posted, Side};
+
+/// Components of a unit normal that differ by no more than this count as equal.
+const EQUALLY_ALIGNED: f64 = 1e-9;
 
 /// An obstacle at rest.
 #[derive(Debug, Clone)]
@@ -97,12 +100,14 @@ fn tangents(dimension: usize, normal: &MeasuredVector) -> [MeasuredVector; 2] {
     if dimension == 2 {
         return [MeasuredVector::new(normal.y, -normal.x, 0.0), MeasuredVector::zeros()];
     }
-    let mut axis = 0;
-    for k in 1..3 {
-        if normal[k].abs() < normal[axis].abs() {
-            axis = k;
-        }
-    }
+    let least = normal.amin() + EQUALLY_ALIGNED;
+    let axis = if normal.x.abs() <= least {
+        0
+    } else if normal.y.abs() <= least {
+        1
+    } else {
+        2
+    };
     let mut across = normal * -normal[axis];
     across[axis] += 1.0;
     let first = across * (1.0 / across.norm());

@@ -1,5 +1,6 @@
 //! The frame of a contact: gap, normal and tangents, and their change with the position.
 
+use crate::mechanics::contact::tolerances::EQUALLY_ALIGNED;
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
 
 /// The directions in which a closed contact can slide.
@@ -69,16 +70,13 @@ impl Frame {
     }
 }
 
-/// Orthonormal tangents to a normal in space: the coordinate axis least aligned with the normal (the first such axis,
-/// so that the choice is reproducible), made perpendicular to the normal, and the cross product of `n` with this
-/// tangent.
+/// Orthonormal tangents to a normal in space: the coordinate axis least aligned with the normal, made perpendicular to
+/// the normal, and the cross product of `n` with this tangent. Of axes that are equally aligned but for round-off it is
+/// the first: at the top of a ball two are, and without a tolerance the tangents would change places at random.
 pub fn tangents_in_space(normal: &Vector) -> [Vector; 2] {
-    let mut axis = 0;
-    for k in 1..3 {
-        if normal[k].abs() < normal[axis].abs() {
-            axis = k;
-        }
-    }
+    let sizes = normal.map(f64::abs);
+    let least = sizes[0].min(sizes[1]).min(sizes[2]) + EQUALLY_ALIGNED;
+    let axis = sizes.iter().position(|size| *size <= least).unwrap_or(0);
     let mut along = [0.0; 3];
     along[axis] = 1.0;
     let first = unit(&add(&along, -normal[axis], normal));

@@ -21,3 +21,8 @@ pub(crate) const SUFFICIENT_DECREASE: f64 = 1e-4;
 /// of the size of the point changes the point by no more than a few unit round-offs, so that rounding prevents a
 /// further decrease.
 pub(crate) const SHORTEST_STEP: f64 = 1e-15;
+
+/// Difference of the components of a unit normal up to which two axes count as equally aligned with it. Round-off of a
+/// normal is far smaller, and a larger value would only move the place at which the tangents pass from one axis to the
+/// next.
+pub(crate) const EQUALLY_ALIGNED: f64 = 1e-9;

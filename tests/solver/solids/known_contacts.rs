@@ -60,6 +60,34 @@ fn cylinder_on_block(cells: usize) -> Value {
     json!({"model": model})
 }
 
+/// A rigid ball pressed into an elastic block about the axis; the radius of the contact is about 1. By the second moment of
+/// Hertz's tractions, `2 P a²/5`, it is `a³ = 3 P R (1 - ν²)/(4 E)`.
+#[test]
+fn a_rigid_ball_on_a_block_follows_hertz() {
+    let (cells, poisson) = (40, 0.3_f64);
+    let graded = |t: f64| EXTENT * (6.0 * t).sinh() / 6.0_f64.sinh();
+    let mesh = Mesh::new("quadrilateral4", &[cells, cells], |[x, y, _]| [graded(x), -graded(1.0 - y), 0.0]);
+    let mut model = mesh
+        .model(json!({"kind": "linear_elastic", "young": 1, "poisson": poisson}), &json!({"plane": "axisymmetric"}));
+    hold(&mut model, &mesh.side(0, false), &["x"]);
+    hold(&mut model, &mesh.side(1, false), &["x", "y"]);
+    model["obstacles"] = json!({"ball": {"kind": "ball", "center": [0, RADIUS], "radius": RADIUS}});
+    let near = |node: &String| model["nodes"][node][0].as_f64().is_some_and(|x| x < 2.0);
+    let contact = |node: String| json!({"node": node, "obstacle": "ball"});
+    model["contacts"] = mesh.side(1, true).into_iter().filter(near).map(contact).collect();
+    model["stages"] = json!([{"name": "press", "obstacle_motion": {"ball": [0, -1.0 / RADIUS]},
+        "until": {"load_above": 1}}]);
+    let model = json!({"model": model});
+    let (increments, report) = trace(&request(&model.to_string()));
+    assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{report:?}");
+    let contacts = &increments.last().expect("an end").contacts;
+    let press = moment(&model, contacts, |contact| contact.normal_reaction, 0);
+    let found = (2.5 * moment(&model, contacts, |contact| contact.normal_reaction, 2) / press).sqrt();
+    let hertz = (0.75 * press * RADIUS * (1.0 - poisson * poisson)).cbrt();
+    println!("{cells} cells: P {press:.6}, radius {found:.5}, Hertz {hertz:.5}");
+    assert!((found / hertz - 1.0).abs() < 0.01, "{found} {hertz}");
+}
+
 /// Sums over the contacts of a force times a power of the place.
 fn moment(model: &Value, contacts: &[ContactState], of: impl Fn(&ContactState) -> f64, power: i32) -> f64 {
     let place = |contact: &ContactState| model["model"]["nodes"][&*contact.node][0].as_f64().unwrap_or(f64::NAN);

@@ -43,8 +43,8 @@ export function frame(obstacle, place, moved = []) {
     normal = obstacle.side === "inside" ? times(out, -1) : out;
   }
   if (normal.length === 2) return { normal, tangents: [[normal[1], -normal[0]]] };
-  let least = 0;
-  normal.forEach((value, axis) => { if (Math.abs(value) < Math.abs(normal[least])) least = axis; });
+  // Of axes equally aligned but for round-off the first.
+  const least = normal.findIndex((value) => Math.abs(value) <= Math.min(...normal.map(Math.abs)) + 1e-9);
   const along = [0, 0, 0].map((_, axis) => (axis === least ? 1 : 0));
   const first = unit(plus(along, normal, -dot(along, normal)));
   return { normal, tangents: [first, cross(normal, first)] };
