@@ -9,7 +9,7 @@
 //! the step is detected.
 
 use crate::algebra::dense::matrix_sink::Sink;
-use crate::mechanics::contact::vector::{Vector, add, direction_of, dot, scaled};
+use crate::mechanics::contact::vector::{Vector, add, direction_of, dot, scaled, size};
 use crate::mechanics::contact::{Mode, Sliding};
 use crate::mechanics::equations::closing_equation::ClosingEquation;
 use crate::mechanics::equations::stage_end_criteria::End;
@@ -21,6 +21,7 @@ use crate::mechanics::multi_contact::spatial::cone_sum;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_contact_forces;
 use crate::mechanics::problem::state::{Rate, State};
+use crate::step::tolerances::{SHORTEST_PART, WAY_MARGIN};
 
 /// An event function; negative values mean that the event has been passed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -265,6 +266,22 @@ impl EventFunction {
         step: f64,
         zero: f64,
     ) -> Option<f64> {
+        self.dip_of_value(loading, modes, (start, end), step, zero).or_else(|| match self {
+            Self::Gap(contact) if loading.contacts[contact].obstacle.is_curved() => {
+                dip_along_motion(loading, contact, (start, end), step, zero)
+            }
+            _ => None,
+        })
+    }
+
+    fn dip_of_value(
+        self,
+        loading: Loading<'_>,
+        modes: &[Mode],
+        (start, end): ((&State, &Rate), (&State, &Rate)),
+        step: f64,
+        zero: f64,
+    ) -> Option<f64> {
         let ends = || (self.value(loading, modes, start.0, start.1), self.value(loading, modes, end.0, end.1));
         let slopes = (self.slope(loading, modes, start.0, start.1), self.slope(loading, modes, end.0, end.1));
         if let (Some(first_slope), Some(last_slope)) = slopes {
@@ -278,6 +295,43 @@ impl EventFunction {
         let (first, last) = ends();
         dip_of_slope(change / step, first, last, zero).map(|place| place * step)
     }
+}
+
+/// A position inside `(0, step)` at which a gap from a curved obstacle is below `-zero`. The gap of a thin obstacle has a
+/// kink within it, where the closest point jumps to the other side, which no interpolant of the gap shows: the motion is
+/// interpolated instead. A gap changes by no more than the motion; where two gaps exceed the way between them by a
+/// margin, no gap between is closed.
+fn dip_along_motion(
+    loading: Loading<'_>,
+    contact: usize,
+    (start, end): ((&State, &Rate), (&State, &Rate)),
+    step: f64,
+    zero: f64,
+) -> Option<f64> {
+    let [first, last] = [start.0, end.0].map(|state| loading.relative(contact, state));
+    let [leaves, arrives] = [start, end].map(|at| scaled(&loading.relative_rate(contact, at.0, at.1), step));
+    let chord = add(&last, -1.0, &first);
+    let gap_at = |x: f64| {
+        let y = 1.0 - x;
+        // Hermite's cubic, from the start.
+        let moved = add(&scaled(&chord, x * x * (1.0 + 2.0 * y)), x * y * y, &leaves);
+        let place = add(&first, 1.0, &add(&moved, -x * x * y, &arrives));
+        (x, place, loading.contacts[contact].gap(&place))
+    };
+    // The earliest first.
+    let mut open = vec![(gap_at(0.0), gap_at(1.0))];
+    while let Some((low, high)) = open.pop() {
+        if low.0 > 0.0 && low.2 < -zero {
+            return Some(low.0 * step);
+        }
+        let way = size(&add(&high.1, -1.0, &low.1));
+        if high.0 - low.0 <= SHORTEST_PART || low.2 + high.2 >= WAY_MARGIN * way {
+            continue;
+        }
+        let middle = gap_at(0.5 * (low.0 + high.0));
+        open.extend([(middle, high), (low, middle)]);
+    }
+    None
 }
 
 /// The closing equation of a zero: an event function with a slope, over its scale.

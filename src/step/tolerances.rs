@@ -83,3 +83,11 @@ pub(crate) const BOUND_TOLERANCE: f64 = 1e-12;
 /// 1e-10 up to which gaps and reactions are zero at a point (`CONTACT_TOLERANCE`), so that no step of no length
 /// remains up to such a change; the value is a thousand times the event tolerance.
 pub(crate) const COINCIDENCE_TOLERANCE: f64 = 1e-10;
+
+/// The ratio of a way along a step to its chord that is allowed for where two gaps are compared with the way between
+/// them: a step turns by at most [`LARGEST_TURN`], over which an arc is 1.5 % longer than its chord.
+pub(crate) const WAY_MARGIN: f64 = 1.1;
+
+/// Part of a step down to which gaps from curved obstacles are compared with the way between them. An obstacle thinner
+/// than this part of a step's motion may be missed; the value bounds the effort to as many gaps.
+pub(crate) const SHORTEST_PART: f64 = 1.0 / 64.0;

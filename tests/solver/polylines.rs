@@ -1,6 +1,6 @@
 //! Obstacles along polylines: smooth curves through points, and polygons with rounded corners.
 
-use crate::common::paths::{close, place, scene, scene_file, trace, typed};
+use crate::common::paths::{Traced, close, judged, place, scene, scene_file, trace, typed};
 use arcslip::check::scenes::exact::bowl::bowl_load;
 use arcslip::model::JobRequest;
 use arcslip::model::request::Method;
@@ -201,4 +201,48 @@ fn what_is_no_curve_is_refused() {
     refused(eight, 2, "points", "crosses itself near");
     let many: Vec<[f64; 2]> = (0..2001).map(|k| [f64::from(k), 0.0]).collect();
     refused(of(json!(many)), 2, "points", "at most 2000");
+}
+
+/// A node without friction, guided or not, is driven up a step under a force that presses it down: far more energy passes
+/// from the drive to the force than the spring holds at first, and steps do not shrink for it.
+#[test]
+fn a_guided_node_is_driven_up_a_step() {
+    let request = typed(json!({"model": {
+        "name": "cam", "dimension": 2, "nodes": {"node": [0.5, 0]}, "supports": {"node": ["x"]},
+        "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[0, 0], [0, 1]]}],
+        "obstacles": {"step": {"kind": "polyline", "points": [[-5, 0], [1, 0], [2, 1], [3, 1]], "rounding": 0.4}},
+        "contacts": [{"node": "node", "obstacle": "step"}],
+        "stages": [
+            {"name": "press", "forces": {"node": [0, -1]}, "until": {"load_above": 1}},
+            {"name": "drive", "displacements": {"node": [1, 0]}, "until": {"load_above": 2}}
+        ]
+    }}));
+    // The energy balance is relative to the energy stored, of which there is next to none at first.
+    let Traced { increments, errors, report, .. } = judged(&request);
+    assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+    assert!(increments.len() < 300, "{}", increments.len());
+    errors.iter().for_each(|errors| assert!(errors.largest_of_state() <= 1e-10, "{errors:?}"));
+    assert!(errors.last().expect("an end").energy <= 1e-6);
+    close(increments.last().expect("an end").displacements["node"][1], 1.0, 1e-12, "height of the step");
+}
+
+/// A body thinner than a step's motion is not passed through, whether a polyline or a ball.
+#[test]
+fn a_node_does_not_jump_through_a_thin_obstacle() {
+    let bar =
+        json!({"kind": "polyline", "points": [[-3, 0], [3, 0], [3, -1], [-3, -1]], "rounding": 0.2, "closed": true});
+    let ball = json!({"kind": "ball", "center": [0, -0.5], "radius": 0.5});
+    for obstacle in [bar, ball] {
+        let request = typed(json!({"model": {
+            "name": "thin obstacle", "dimension": 2, "nodes": {"node": [0, 5]},
+            "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[1, 0], [0, 1]]}],
+            "obstacles": {"thin": obstacle}, "contacts": [{"node": "node", "obstacle": "thin"}],
+            "stages": [{"name": "press", "forces": {"node": [0, -1]}, "until": {"load_above": 20}}]
+        }}));
+        let (increments, report) = trace(&request);
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+        let touch = increments.iter().find(|increment| increment.point.kind == PointKind::ContactChange);
+        close(touch.expect("a touch").load_factor, 5.0, 1e-10, "load of the touch");
+        close(increments.last().expect("an end").contacts[0].normal_reaction, 15.0, 1e-10, "reaction at the end");
+    }
 }

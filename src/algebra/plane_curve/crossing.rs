@@ -27,7 +27,7 @@ pub(super) fn crossing(curve: &PlaneCurve) -> Option<PlanePoint> {
             let (first, last) = (chord.min(*other), chord.max(*other));
             let are_neighbours = last - first <= 1 || (closed && first == 0 && last + 1 == chords.len());
             if !are_neighbours && boxes[first].overlaps(&boxes[last]) && cross_over(&chords[first], &chords[last]) {
-                return Some(chords[first][0]);
+                return Some(common_point(&chords[first], &chords[last]));
             }
         }
         open.push(chord);
@@ -47,6 +47,13 @@ fn chords(curve: &PlaneCurve) -> Vec<[PlanePoint; 2]> {
     places.extend(curve.pieces.last().map(|piece| piece[3]));
     places.extend(curve.rays.iter().map(|rays| far(&rays[1])));
     places.windows(2).map(|ends| [ends[0], ends[1]]).collect()
+}
+
+/// The point that two chords which cross have in common; of parallel chords the start of the first.
+fn common_point(first: &[PlanePoint; 2], second: &[PlanePoint; 2]) -> PlanePoint {
+    let [along, across] = [first, second].map(|chord| minus(chord[1], chord[0]));
+    let part = cross(minus(second[0], first[0]), across) / cross(along, across);
+    if part.is_finite() { plus(first[0], part, along) } else { first[0] }
 }
 
 /// Whether two chords have a point in common.

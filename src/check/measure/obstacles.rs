@@ -13,7 +13,7 @@ const EQUALLY_ALIGNED: f64 = 1e-9;
 /// An obstacle at rest.
 #[derive(Debug, Clone)]
 pub(super) struct MeasuredObstacle {
-    /// A point of a plane, the centre of a ball; the origin for a polyline.
+    /// A point of a plane, the centre of a ball, the first point of a polyline.
     place: MeasuredVector,
     shape: ObstacleShape,
 }
@@ -53,7 +53,8 @@ impl MeasuredObstacle {
                 Self { place: padded(center), shape: ObstacleShape::Ball { radius: *radius, sign } }
             }
             Posted::Polyline(polyline) => {
-                Self { place: MeasuredVector::zeros(), shape: ObstacleShape::Polyline(MeasuredCurve::new(polyline)) }
+                let origin = polyline.points.first().map_or_else(MeasuredVector::zeros, |point| padded(point));
+                Self { place: origin, shape: ObstacleShape::Polyline(MeasuredCurve::new(polyline)) }
             }
         }
     }

@@ -24,7 +24,7 @@ use crate::mechanics::contact::all_continue;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::state::{Rate, State};
-use crate::mechanics::problem::work_and_dissipation;
+use crate::mechanics::problem::work_and_dissipation::{self, IncrementWork};
 use crate::mechanics::structure::elements::COLLAPSED;
 use crate::model::request::{Events, Method};
 use crate::result::increment::Energy;
@@ -298,10 +298,11 @@ fn balance(trace: &PathTrace<'_>, rate: &Rate, reached: Box<Reached>) -> Accepte
     let start = (&trace.at.here.state, rate);
     let end = (&reached.corrected.state, &reached.rate);
     let (loading, modes, turned) = (trace.loading(), &trace.at.here.modes, rate.angle(&reached.rate));
-    let (external_work, dissipated) = work_and_dissipation::work_and_dissipation(loading, modes, start, end, turned);
+    let work = work_and_dissipation::work_and_dissipation(loading, modes, start, end, turned);
+    let IncrementWork { external: external_work, dissipated, largest_part: largest_work } = work;
     let strain = trace.structure.strain_energy(&reached.corrected.state.displacement) - trace.initial_strain;
     let (step, force_scale) = (reached.step, reached.corrected.force_scale);
-    let added = Added { step, external_work, dissipated, strain, force_scale };
+    let added = Added { step, external_work, largest_work, dissipated, strain, force_scale };
     let (mode_named, crossing, signature) = (None, None, None);
     AcceptedStep { reached, added, turned, mode_named, returned: false, crossing, signature, joined: 0 }
 }
@@ -339,7 +340,10 @@ fn next_step_factor(trace: &PathTrace<'_>, accepted: &AcceptedStep, tried: f64, 
     let imbalance = if imbalance <= rounding { 0.0 } else { imbalance };
     let floor =
         (ENERGY_ROUND_OFF * trace.at.totals.force_scale.max(reached.corrected.force_scale)).max(f64::MIN_POSITIVE);
-    let size = trace.at.totals.largest_energy.max(added.external_work.abs()).max(added.strain.abs()).max(floor);
+    // Forces that move against each other may exchange far more energy than the structure stores, as where a node is
+    // driven along an obstacle onto which a force presses it: the error is that of the energy exchanged.
+    let exchanged = added.external_work.abs().max(added.largest_work);
+    let size = trace.at.totals.largest_energy.max(exchanged).max(added.strain.abs()).max(floor);
     // Next to stiff elements round-off limits the accuracy of the forces: the energy stored in soft elements alone may
     // be smaller than its effect, whatever the step. A short step is therefore not shortened any further.
     let by_stiffness = || {

@@ -36,6 +36,8 @@ pub(crate) struct Totals {
 pub(crate) struct Added {
     pub step: f64,
     pub external_work: f64,
+    /// The largest part of the external work, where parts may cancel.
+    pub largest_work: f64,
     pub dissipated: f64,
     /// Total at the end of the increment.
     pub strain: f64,

@@ -147,6 +147,7 @@ impl<'a> RegularisedPath<'a> {
         self.totals.add(&Added {
             step,
             external_work,
+            largest_work: external_work.abs(),
             dissipated,
             strain: self.structure.strain_energy(&self.here.state.displacement) - self.initial_strain,
             force_scale: converged.force_scale,

@@ -32,14 +32,23 @@ struct Ends {
 /// A point and the direction of the path there.
 pub type Placed<'a> = (&'a State, &'a Rate);
 
-/// `(ΔW, ΔD)` of an increment in one mode; `turned` is the angle (radians) by which the path's direction turns.
+/// The energies of an increment.
+#[derive(Debug, Clone, Copy)]
+pub struct IncrementWork {
+    pub external: f64,
+    pub dissipated: f64,
+    /// The largest part of the external work, of forces held, applied, driving or following: the parts may cancel.
+    pub largest_part: f64,
+}
+
+/// `ΔW` and `ΔD` of an increment in one mode; `turned` is the angle (radians) by which the path's direction turns.
 pub fn work_and_dissipation(
     loading: Loading<'_>,
     modes: &[Mode],
     start: Placed<'_>,
     end: Placed<'_>,
     turned: f64,
-) -> (f64, f64) {
+) -> IncrementWork {
     let length = start.0.distance(end.0) * (1.0 + turned * turned / 24.0);
     let load = Ends { first: start.0.load, first_rate: start.1.load, last: end.0.load, last_rate: end.1.load };
     // Motions are measured from the start, so that large displacements cost no digits.
@@ -53,15 +62,16 @@ pub fn work_and_dissipation(
         last: along_chord(&loading.pattern.forces),
         last_rate: dot(&loading.pattern.forces, &end.1.displacement),
     };
-    let mut work = along_chord(&loading.held.forces) + integral(load, path, length);
+    let (held, applied) = (along_chord(&loading.held.forces), integral(load, path, length));
+    let (mut driving, mut following) = (0.0, 0.0);
     if loading.pattern.moves_boundary() {
         let (first, first_rate) = boundary_force(loading, start);
         let (last, last_rate) = boundary_force(loading, end);
         let driven = Ends { first: 0.0, last: load.last - load.first, ..load };
-        work += integral(Ends { first, first_rate, last, last_rate }, driven, length);
+        driving = integral(Ends { first, first_rate, last, last_rate }, driven, length);
     }
     if loading.structure.has_following_loads() {
-        work += work_of_following_loads(loading, start, end, length);
+        following = work_of_following_loads(loading, start, end, length);
     }
     let mut dissipation = 0.0;
     for (index, (mode, contact)) in modes.iter().zip(loading.contacts).enumerate() {
@@ -81,7 +91,9 @@ pub fn work_and_dissipation(
             dissipation -= integral(traction, slip, length);
         }
     }
-    (work, dissipation)
+    let parts = [held, applied, driving, following];
+    let largest_part = parts.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
+    IncrementWork { external: parts.iter().sum(), dissipated: dissipation, largest_part }
 }
 
 fn work_of_following_loads(loading: Loading<'_>, start: Placed<'_>, end: Placed<'_>, length: f64) -> f64 {

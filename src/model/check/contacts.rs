@@ -107,7 +107,13 @@ fn start(contact: &Contact, obstacle: &Obstacle, facing: &Facing, at: &DocumentP
                 Obstacle::Ball { side: Side::Outside, .. } => "inside the ball",
                 Obstacle::Ball { side: Side::Inside, .. } => "outside the ball",
             };
-            format!("{node} is {side} {name} at the start, gap {:?}; a gap of 0 or more is expected", facing.gap)
+            let turn = match obstacle {
+                Obstacle::Polyline(Polyline { closed: false, .. }) => {
+                    " (the free side is to the left of the points' order: turn them round if it is the other)"
+                }
+                _ => "",
+            };
+            format!("{node} is {side} {name} at the start, gap {:?}; a gap of 0 or more is expected{turn}", facing.gap)
         });
     } else if facing.normal.is_none() {
         mistakes.add(at, || {

@@ -95,7 +95,8 @@ fn note(mistake: CurveMistake, polyline: &Polyline, at: &DocumentPlace, mistakes
         CurveMistake::Crosses { near } => mistakes.add(&points, || {
             let origin = polyline.origin();
             let [x, y] = [near[0] + origin[0], near[1] + origin[1]];
-            format!("the curve crosses itself near [{x:.6}, {y:.6}], so that it has no free side; change the points there")
+            let ends = if polyline.closed { "" } else { ", with the straight continuation of its ends," };
+            format!("the curve{ends} crosses itself near [{x:.6}, {y:.6}], so that it has no free side; change the points")
         }),
     }
 }

@@ -23,10 +23,9 @@ struct MeasuredPiece {
     reach: f64,
 }
 
-/// The curve of a polyline, and its rays where it is open: their starts and outward unit directions.
+/// The curve of a polyline relative to its first point, and its rays where it is open: their starts and outward unit directions.
 #[derive(Debug, Clone)]
 pub(super) struct MeasuredCurve {
-    origin: PlanePlace,
     pieces: Vec<MeasuredPiece>,
     rays: Vec<(PlanePlace, PlanePlace)>,
     /// 1 where the left of the curve is free, otherwise -1.
@@ -52,12 +51,12 @@ impl MeasuredCurve {
         let doubled: f64 = (0..points.len()).map(|k| points[k].perp(&points[(k + 1) % points.len()])).sum();
         let leaves_left = !posted.closed || (doubled > 0.0) == (posted.side == Some(Side::Inside));
         let size = posted.points.iter().flatten().fold(0.0_f64, |most, value| most.max(value.abs()));
-        Self { origin, pieces, rays, sign: if leaves_left { 1.0 } else { -1.0 }, size }
+        Self { pieces, rays, sign: if leaves_left { 1.0 } else { -1.0 }, size }
     }
 
-    /// The gap at a place, and the unit normal into the free side.
+    /// The gap at a place relative to the first point, and the unit normal into the free side.
     pub fn gap(&self, place: [f64; 2]) -> (f64, [f64; 2]) {
-        let place = PlanePlace::new(place[0], place[1]) - self.origin;
+        let place = PlanePlace::new(place[0], place[1]);
         let mut best = (f64::INFINITY, PlanePlace::zeros(), PlanePlace::x());
         let mut try_at = |foot: PlanePlace, along: PlanePlace| {
             let distance = (place - foot).norm();
