@@ -246,3 +246,22 @@ fn a_node_does_not_jump_through_a_thin_obstacle() {
         close(increments.last().expect("an end").contacts[0].normal_reaction, 15.0, 1e-10, "reaction at the end");
     }
 }
+
+/// Corners that take up whole edges, in a scale of length that does not divide them: what the check accepts, the solver has.
+#[test]
+fn rounding_may_take_up_the_edges() {
+    for height in [0.3, 0.7, 1.1, 1.3] {
+        let request = typed(json!({"model": {
+            "name": "round block", "dimension": 2, "nodes": {"node": [0.5, 1.0 + height], "pin": [3.7, 1.9]},
+            "supports": {"pin": ["x", "y"]},
+            "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[1, 0], [0, 1]]},
+                {"kind": "bar", "nodes": ["pin", "node"], "axial_stiffness": 0.1}],
+            "obstacles": {"block": {"kind": "polyline", "points": [[0, 0], [1, 0], [1, 1], [0, 1]], "closed": true,
+                "rounding": 0.5}},
+            "contacts": [{"node": "node", "obstacle": "block", "friction": 0.3}],
+            "stages": [{"name": "press", "forces": {"node": [0, -1]}, "until": {"load_above": 3}}]
+        }}));
+        let (_, report) = trace(&request);
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{height}");
+    }
+}

@@ -11,7 +11,7 @@ const CHORDS: usize = 8;
 /// Length of the rays of an open curve, relative to its extent, up to which crossings are looked for.
 const FAR: f64 = 1e6;
 
-/// A place near which the curve crosses itcurve.
+/// A place near which the curve crosses itself.
 pub(super) fn crossing(curve: &PlaneCurve) -> Option<PlanePoint> {
     let chords = chords(curve);
     let closed = curve.rays.is_none();

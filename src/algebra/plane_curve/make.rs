@@ -1,4 +1,5 @@
-//! Curves from points.
+//! Curves from points: cubic splines by the second derivatives at their points, and corners by uniform cubic B-splines
+//! (C. de Boor, *A Practical Guide to Splines*, Springer 2001).
 
 use crate::algebra::plane_curve::{CurveMistake, PlanePoint, cross, dot, minus, plus, size};
 
@@ -93,7 +94,7 @@ impl PolylineEdges {
             let chord = minus(points[next], points[edge]);
             let length = size(chord);
             if length <= COINCIDENT * extent {
-                return Err(CurveMistake::Coincident { point: next });
+                return Err(CurveMistake::Coincident { point: next.max(edge) });
             }
             edges.lengths.push(length);
             edges.directions.push(chord.map(|part| part / length));

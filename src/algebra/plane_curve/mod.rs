@@ -18,6 +18,7 @@ mod tests;
 
 pub use closest::ClosestPoint;
 
+/// Coordinates in the plane (length).
 pub type PlanePoint = [f64; 2];
 
 /// A curve of cubic pieces. An open curve continues along its end tangents to infinity, so that every curve divides the
@@ -102,6 +103,14 @@ impl PlaneCurve {
         let boxes = closest::boxes(&pieces);
         let curve = Self { pieces, boxes, rays };
         crossing::crossing(&curve).map_or(Ok(curve), |near| Err(CurveMistake::Crosses { near }))
+    }
+
+    /// The same curve in multiples of a unit of length.
+    pub fn in_units_of(&self, unit: f64) -> Self {
+        let scaled = |point: PlanePoint| point.map(|part| part / unit);
+        let pieces: Vec<[PlanePoint; 4]> = self.pieces.iter().map(|piece| piece.map(scaled)).collect();
+        let rays = self.rays.map(|rays| rays.map(|ray| EndRay { start: scaled(ray.start), ..ray }));
+        Self { boxes: closest::boxes(&pieces), pieces, rays }
     }
 
     /// The curve at its point closest to a place; of equally close points, one that follows from the place alone.

@@ -23,7 +23,8 @@ struct RawModel<'a> {
     mesh: Option<&'a RawValue>,
 }
 
-/// The text of a request with the contents of its mesh file, whose path is relative to the folder of the request's; the text as it is where it names none, or is no request.
+/// The text of a request with the contents of its mesh file, whose path is relative to the folder of the request's; the
+/// text as it is where it names none, or is no request.
 ///
 /// # Errors
 /// The mesh file cannot be read; in words.

@@ -195,7 +195,9 @@ fn curves(model: &Model, length: f64) -> HashMap<&str, Arc<PlaneCurve>> {
         request::Obstacle::Polyline(polyline) => Some((name.as_str(), polyline)),
         request::Obstacle::Plane { .. } | request::Obstacle::Ball { .. } => None,
     });
-    polylines.filter_map(|(name, polyline)| Some((name, Arc::new(polyline.curve(length).ok()?)))).collect()
+    polylines
+        .filter_map(|(name, polyline)| Some((name, Arc::new(polyline.curve().ok()?.in_units_of(length)))))
+        .collect()
 }
 
 fn build_contact(

@@ -73,7 +73,7 @@ fn curve_of(polyline: &Polyline, dimension: usize, at: &DocumentPlace, mistakes:
     if mistakes.count() != before {
         return None;
     }
-    polyline.curve(1.0).map_err(|mistake| note(mistake, polyline, at, mistakes)).ok()
+    polyline.curve().map_err(|mistake| note(mistake, polyline, at, mistakes)).ok()
 }
 
 fn note(mistake: CurveMistake, polyline: &Polyline, at: &DocumentPlace, mistakes: &mut Mistakes) {

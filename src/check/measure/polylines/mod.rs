@@ -23,7 +23,8 @@ struct MeasuredPiece {
     reach: f64,
 }
 
-/// The curve of a polyline relative to its first point, and its rays where it is open: their starts and outward unit directions.
+/// The curve of a polyline relative to its first point, and its rays where it is open: their starts and outward unit
+/// directions.
 #[derive(Debug, Clone)]
 pub(super) struct MeasuredCurve {
     pieces: Vec<MeasuredPiece>,

@@ -45,10 +45,10 @@ impl Polyline {
         self.points.first().map_or([0.0; 2], |point| at(point))
     }
 
-    /// The curve relative to the first point, in multiples of a unit of length.
-    pub(crate) fn curve(&self, unit: f64) -> Result<PlaneCurve, CurveMistake> {
-        let points: Vec<PlanePoint> = self.relative().map(|place| place.map(|part| part / unit)).collect();
-        PlaneCurve::of_polyline(&points, self.closed, self.rounding.map(|rounding| rounding / unit))
+    /// The curve relative to the first point, in the unit of the model.
+    pub(crate) fn curve(&self) -> Result<PlaneCurve, CurveMistake> {
+        let points: Vec<PlanePoint> = self.relative().collect();
+        PlaneCurve::of_polyline(&points, self.closed, self.rounding)
     }
 
     /// 1 where the free side is to the left of the curve, -1 where it is to the right.
