@@ -143,7 +143,7 @@ pub use continuation::path::checkpoint::CheckpointError;
 pub use mechanics::structure::elements::bar::Strain;
 pub use model::decode::expanded;
 pub use model::request::{
-    Analysis, ArcLength, Certificate, Component, Contact, ContactRange, ContentEncoding, DisplacementBound,
+    Analysis, ArcLength, Certificate, Component, Contact, ContactDiscretisation, ContactRange, ContentEncoding, DisplacementBound,
     ElasticConstants, Element, ElementReference, Events, Explore, ForceRange, JobRequest, LoadSign, LockingMend,
     Material, MeshFile, MeshFormat, MeshGroup, Method, Model, Mpec, NamedSet, Obstacle, PlaneCondition, Polyline,
     Record, RecordedContact, RecordedContacts, RecordedElements, RecordedSupports, Regularised, Side, Solid, SolidKind,

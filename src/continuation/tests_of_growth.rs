@@ -7,7 +7,7 @@
 use crate::continuation::path::iterator::Path;
 use crate::continuation::scene::{AdditionalParts, Scene};
 use crate::mechanics::contact::coulomb::CoulombFriction;
-use crate::mechanics::contact::kinematics::{CoupledKinematics, Kinematics};
+use crate::mechanics::contact::kinematics::{CoupledKinematics, Kinematics, LocalDisplacements};
 use crate::mechanics::contact::obstacle::RigidSurface;
 use crate::mechanics::contact::vector::Vector;
 use crate::mechanics::contact::{ContactPair, Sliding};
@@ -145,6 +145,11 @@ struct NodeOnRail {
     places: [Plane; 3],
 }
 
+/// The displacements of the node and of the rail's nodes.
+fn all(displacement: LocalDisplacements<'_>) -> [f64; 6] {
+    std::array::from_fn(displacement)
+}
+
 /// The rail's unit vector, normal and length, and the position of the node along and across it.
 struct Rail {
     tangent: Plane,
@@ -170,28 +175,31 @@ impl CoupledKinematics for NodeOnRail {
         &self.nodes
     }
 
-    fn place(&self, q: &[f64]) -> Vector {
-        let (start, here) = (self.rail(&[0.0; 6]), self.rail(q));
+    fn place(&self, displacement: LocalDisplacements<'_>) -> Vector {
+        let (start, here) = (self.rail(&[0.0; 6]), self.rail(&all(displacement)));
         [here.along - start.along, here.across - start.across, 0.0]
     }
 
-    fn write_columns(&self, q: &[f64], columns: &mut [Vector]) {
-        let Rail { tangent, normal, length, along, across } = self.rail(q);
+    fn each_column(&self, displacement: LocalDisplacements<'_>, each: &mut dyn FnMut(usize, &Vector)) {
+        let Rail { tangent, normal, length, along, across } = self.rail(&all(displacement));
         for k in 0..2 {
             let by_node = [tangent[k], normal[k]];
             let by_rail = [across / length * normal[k], -along / length * normal[k]];
-            columns[k] = [by_node[0], by_node[1], 0.0];
-            columns[2 + k] = [-by_node[0] - by_rail[0], -by_node[1] - by_rail[1], 0.0];
-            columns[4 + k] = [by_rail[0], by_rail[1], 0.0];
+            each(k, &[by_node[0], by_node[1], 0.0]);
+            each(2 + k, &[-by_node[0] - by_rail[0], -by_node[1] - by_rail[1], 0.0]);
+            each(4 + k, &[by_rail[0], by_rail[1], 0.0]);
         }
     }
 
-    fn write_curvature(&self, q: &[f64], force: &Vector, curvature: &mut [f64]) {
-        let Rail { tangent, normal, length, along, across } = self.rail(q);
+    fn each_curvature(
+        &self,
+        displacement: LocalDisplacements<'_>,
+        force: &Vector,
+        add: &mut dyn FnMut(usize, usize, f64),
+    ) {
+        let Rail { tangent, normal, length, along, across } = self.rail(&all(displacement));
         let [t, n, _] = *force;
         let (moment, pull) = (t * across - n * along, t * along + n * across);
-        curvature.fill(0.0);
-        let mut add = |row: usize, column: usize, value: f64| curvature[6 * row + column] += value;
         for i in 0..2 {
             for j in 0..2 {
                 // Contributions of the node's position and of the rail; the second node moves both.

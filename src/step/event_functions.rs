@@ -194,7 +194,7 @@ impl EventFunction {
     fn change(self, loading: Loading<'_>, modes: &[Mode], start: &State, end: &State) -> Option<f64> {
         match self {
             Self::Sliding(contact) => {
-                let chord = add(&loading.relative(contact, end), -1.0, &loading.relative(contact, start));
+                let chord = loading.relative_motion(contact, start, end);
                 let directions =
                     add(&direction(loading, modes, contact, start), 1.0, &direction(loading, modes, contact, end));
                 Some(dot(&scaled(&directions, 0.5), &chord))

@@ -33,7 +33,7 @@ impl Recorder {
         let contacts = record.named_contacts().map(|named| {
             let named: HashSet<(&str, &str)> =
                 named.iter().map(|one| (one.node.as_str(), one.obstacle.as_str())).collect();
-            let names = model.contacts.iter().map(|contact| (contact.node.clone(), contact.obstacle.clone()));
+            let names = model.contacts.iter().map(|contact| (contact.node.clone(), contact.counterpart().to_owned()));
             names.filter(|(node, obstacle)| named.contains(&(node.as_str(), obstacle.as_str()))).collect()
         });
         let recorded: HashSet<&str> = recorded_supports(request).into_iter().collect();

@@ -69,8 +69,8 @@ impl Apart {
     /// Starts at the current state, without any rows.
     pub fn begin(&mut self, posted: &Posted, loading: &PostedLoading, displacements: &[MeasuredVector]) {
         let waiting = |(contact, posted_contact)| {
-            let gap = posted.frame(posted_contact, loading, displacements).gap;
-            Reverse(self.waiting(contact, gap))
+            let way = posted.clearance(posted_contact, loading, displacements);
+            Reverse(self.waiting(contact, way))
         };
         let waiting = posted.contacts.iter().enumerate().map(waiting).collect();
         self.waiting = waiting;
@@ -78,8 +78,8 @@ impl Apart {
         self.rows.clear();
     }
 
-    fn waiting(&self, contact: usize, gap: f64) -> SeparatedContact {
-        let way = gap.max(0.0) / self.fastest[contact];
+    fn waiting(&self, contact: usize, clearance: f64) -> SeparatedContact {
+        let way = clearance.max(0.0) / self.fastest[contact];
         SeparatedContact { until: self.travelled + way - ROUNDING * (self.travelled + way), contact }
     }
 
@@ -122,7 +122,8 @@ impl Apart {
             }
             let gap = posted.frame(&posted.contacts[contact], loading, displacements).gap;
             errors.contact = worse(errors.contact, if gap > 0.0 { 0.0 } else { gap.abs() / self.length });
-            looked_at.push(Reverse(self.waiting(contact, gap)));
+            let way = posted.clearance(&posted.contacts[contact], loading, displacements);
+            looked_at.push(Reverse(self.waiting(contact, way)));
         }
         self.waiting.extend(looked_at);
     }

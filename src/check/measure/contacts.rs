@@ -21,6 +21,8 @@ pub(super) struct Seen<'a> {
     /// `slip_total` of the increment before.
     pub slipped_before: [f64; 2],
     pub dimension: usize,
+    /// The force on the node, or on its surface where bodies touch.
+    pub force: MeasuredVector,
 }
 
 impl Seen<'_> {
@@ -83,7 +85,7 @@ impl Seen<'_> {
             }
         }
         if !state.reaction.is_empty() {
-            let off = padded(&state.reaction) - self::force(state, frame);
+            let off = padded(&state.reaction) - self.force;
             errors.reported = worse(errors.reported, largest_or_nan(&off) / force);
         }
         let of_status = match state.status {

@@ -46,7 +46,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `errors` | the errors and their maxima |
-//! | `posted`, `elements`, `beams`, `space_beams`, `solids`, `dual_number`, `obstacles`, `polylines`, `vector` | the posted model, with indices instead of names |
+//! | `posted`, `elements`, `beams`, `space_beams`, `solids`, `dual_number`, `obstacles`, `polylines`, `bodies`, `vector` | the posted model, with indices instead of names |
 //! | `contacts` | the check of one contact |
 //! | `global` | the balance of the whole structure, and the forces as reported |
 //! | `rows`, `apart` | the contacts with a row in an increment, and the contacts without a row |
@@ -54,6 +54,7 @@
 
 pub(crate) mod apart;
 pub(crate) mod beams;
+mod bodies;
 pub(crate) mod contacts;
 pub(crate) mod dual_number;
 pub(crate) mod elements;
@@ -80,7 +81,7 @@ use errors::worse;
 use global::Balance;
 use history::PreviousPoint;
 use obstacles::MeasuredFrame;
-use posted::{Posted, PostedLoading};
+use posted::{Counterpart, Posted, PostedLoading};
 use rows::{ContactRows, RowChange};
 use std::f64::consts::TAU;
 use vector::{MeasuredVector, largest, padded};
@@ -245,15 +246,27 @@ impl Judge {
         let of_sum = (increment.arc_length - sum).abs() / sum.max(1.0);
         errors.arc_length = worse(worse(0.0, of_step), of_sum);
         for ((state, index), frame) in increment.contacts.iter().zip(self.rows.contacts()).zip(&self.work.frames) {
-            let contact = self.posted.contacts[*index];
-            let moved = self.work.displacements[contact.node] - self.before.displacements[contact.node];
-            let before = contact.motion.map_or_else(MeasuredVector::zeros, |place| self.before.shifts[place]);
-            let shifted = self.work.loading.shift(&contact) - before;
+            let contact = &self.posted.contacts[*index];
+            let (motion, on_node) = match &contact.counterpart {
+                Counterpart::Obstacle(_) => {
+                    let moved = self.work.displacements[contact.node] - self.before.displacements[contact.node];
+                    let before = contact.motion.map_or_else(MeasuredVector::zeros, |place| self.before.shifts[place]);
+                    let shifted = self.work.loading.shift(contact) - before;
+                    (moved - shifted, contacts::force(state, frame))
+                }
+                Counterpart::Body(body) => {
+                    let here = body.state(&self.work.displacements);
+                    let motion = here.motion_since(&body.state(&self.before.displacements));
+                    let traction = state.tangential_reaction.first().copied().unwrap_or(0.0);
+                    (motion, here.forces(state.normal_reaction, traction).1)
+                }
+            };
             let seen = Seen {
                 state,
                 frame,
                 friction: contact.friction,
-                motion: moved - shifted,
+                motion,
+                force: on_node,
                 direction_before: self.before.directions.get(index).copied(),
                 slipped_before: self.before.slips.get(index).copied().unwrap_or_default(),
                 dimension: self.posted.dimension,
@@ -377,9 +390,21 @@ impl Judge {
         for (contact, state) in rows.zip(&increment.contacts) {
             let frame = posted.frame(contact, &work.loading, &work.displacements);
             work.frames.push(frame);
-            let force = contacts::force(state, &frame);
-            work.balance[contact.node] -= force;
-            outside.add(posted, contact.node, &work.displacements[contact.node], &force);
+            match &contact.counterpart {
+                Counterpart::Obstacle(_) => {
+                    let force = contacts::force(state, &frame);
+                    work.balance[contact.node] -= force;
+                    outside.add(posted, contact.node, &work.displacements[contact.node], &force);
+                }
+                Counterpart::Body(body) if state.normal_reaction != 0.0 => {
+                    let traction = state.tangential_reaction.first().copied().unwrap_or(0.0);
+                    for (node, force) in body.state(&work.displacements).forces(state.normal_reaction, traction).0 {
+                        work.balance[node] -= force;
+                        outside.between(&force);
+                    }
+                }
+                Counterpart::Body(_) => {}
+            }
             most = most.max(state.normal_reaction.abs());
         }
         // A force that is not finite already gives an unbounded error; the scale of the other errors stays finite.

@@ -1,11 +1,13 @@
 //! The posted model with indices instead of names, so that the check of an increment needs no look-ups.
 
+use crate::check::measure::bodies::MeasuredBody;
 use crate::check::measure::elements::MeasuredElement;
 use crate::check::measure::obstacles::{MeasuredFrame, MeasuredObstacle};
 use crate::check::measure::solids::{MeasuredFace, SolidShares, pressed_surfaces};
 use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::model::request::{JobRequest, Model, PlaneCondition};
 use indexmap::{IndexMap, IndexSet};
+use std::f64::consts::SQRT_2;
 
 #[derive(Debug, Clone)]
 pub(super) struct Posted {
@@ -47,13 +49,20 @@ impl PostedNode {
     }
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct PostedContact {
     pub node: usize,
-    pub obstacle: usize,
+    pub counterpart: Counterpart,
     /// The index of the obstacle among the moving obstacles, if the obstacle moves.
     pub motion: Option<usize>,
     pub friction: f64,
+}
+
+/// What a node touches: an obstacle by its index, or another body.
+#[derive(Debug, Clone)]
+pub(super) enum Counterpart {
+    Obstacle(usize),
+    Body(Box<MeasuredBody>),
 }
 
 #[derive(Debug, Clone)]
@@ -103,9 +112,13 @@ impl Posted {
         let moving: IndexSet<&str> = moved.map(String::as_str).collect();
         let contact = |contact: &crate::model::request::Contact| {
             let node = model.nodes.get_index_of(&contact.node)?;
-            let obstacle = model.obstacles.get_index_of(&contact.obstacle)?;
+            let friction = contact.friction;
+            if let Some(body) = MeasuredBody::new(model, contact) {
+                return Some(PostedContact { node, counterpart: Counterpart::Body(Box::new(body)), motion: None, friction });
+            }
+            let counterpart = Counterpart::Obstacle(model.obstacles.get_index_of(&contact.obstacle)?);
             let motion = moving.get_index_of(contact.obstacle.as_str());
-            Some(PostedContact { node, obstacle, motion, friction: contact.friction })
+            Some(PostedContact { node, counterpart, motion, friction })
         };
         let shares = SolidShares::new(model);
         let pressed: IndexMap<&str, Vec<MeasuredFace>> = pressed_surfaces(model).into_iter().collect();
@@ -196,8 +209,28 @@ impl Posted {
         displacements: &[MeasuredVector],
     ) -> MeasuredFrame {
         let place = &self.nodes[contact.node].place;
-        let obstacle = &self.obstacles[contact.obstacle];
-        obstacle.frame(self.dimension, &loading.shift(contact), place, &displacements[contact.node])
+        match &contact.counterpart {
+            Counterpart::Obstacle(obstacle) => {
+                let obstacle = &self.obstacles[*obstacle];
+                obstacle.frame(self.dimension, &loading.shift(contact), place, &displacements[contact.node])
+            }
+            Counterpart::Body(body) => body.frame(body.gap(displacements), displacements),
+        }
+    }
+
+    /// A distance that has to be covered before the contact can close, and the part of it that bodies and obstacle cover
+    /// per unit motion of the nodes.
+    pub fn clearance(
+        &self,
+        contact: &PostedContact,
+        loading: &PostedLoading,
+        displacements: &[MeasuredVector],
+    ) -> f64 {
+        match &contact.counterpart {
+            Counterpart::Obstacle(_) => self.frame(contact, loading, displacements).gap,
+            // Both bodies move.
+            Counterpart::Body(body) => body.distance(displacements) / SQRT_2,
+        }
     }
 }
 

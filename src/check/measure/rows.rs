@@ -30,7 +30,7 @@ impl ContactRows {
         let mut named: HashMap<String, HashMap<String, Vec<usize>>> = HashMap::new();
         let mut names = Vec::with_capacity(request.model.contacts.len());
         for (index, contact) in request.model.contacts.iter().enumerate() {
-            let (node, obstacle) = (contact.node.clone(), contact.obstacle.clone());
+            let (node, obstacle) = (contact.node.clone(), contact.counterpart().to_owned());
             named.entry(node.clone()).or_default().entry(obstacle.clone()).or_default().push(index);
             names.push((node, obstacle));
         }

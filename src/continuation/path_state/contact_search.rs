@@ -3,7 +3,7 @@
 //! Over an arc length `a` a contact's gap changes by at most `a √(1 + |d|²)`, with `d` the translation of its obstacle
 //! per load factor: its node moves relative to the obstacle by `Δu - d Δs`, `‖(Δu, Δs)‖ <= a`, and a gap changes by no
 //! more than the relative motion (it is a signed distance). So a gap `g` cannot close within an arc length of
-//! `g/√(1 + |d|²)`, and is not evaluated before. A contact that could be reached within a few steps joins the others
+//! `g/√(1 + |d|²)`, and is not evaluated before. Between two bodies it is their distance, which both may shorten. A contact that could be reached within a few steps joins the others
 //! and remains with them. Whether it does follows from its gap alone, not from the points at which the gap was
 //! evaluated.
 //!
@@ -12,7 +12,7 @@
 use crate::continuation::path_state::resumable_state::Progress;
 use crate::continuation::path_state::tolerances::DISTANCE_ROUND_OFF;
 use crate::continuation::scene::Scene;
-use crate::continuation::scene::recorded_contacts::fastest;
+use crate::continuation::scene::recorded_contacts::way_to_contact;
 use crate::continuation::scene::tolerances::REACH_IN_STEPS;
 use crate::mechanics::contact::ContactPair;
 use crate::mechanics::problem::loading::{LoadPattern, Loading};
@@ -81,15 +81,16 @@ pub(crate) fn far_contacts(scene: &Scene, at: &Progress) -> FarContacts {
     let loading = whole(scene, at);
     let far = |contact: &usize| at.near.binary_search(contact).is_err();
     let waiting = |contact: usize| {
-        ContactOutOfReach::at(scene, contact, loading.gap(contact, &at.here.state), at.totals.arc_length)
+        let state = &at.here.state;
+        let way = way_to_contact(scene, contact, &state.displacement, loading.gap(contact, state));
+        ContactOutOfReach::at(contact, way, at.totals.arc_length)
     };
     (0..scene.contacts.len()).filter(far).map(waiting).collect()
 }
 
 impl ContactOutOfReach {
-    /// A contact with this gap after the path has covered an arc length `travelled`.
-    fn at(scene: &Scene, contact: usize, gap: f64, travelled: f64) -> Self {
-        let way = gap / fastest(scene, contact);
+    /// A contact this way off after the path has covered an arc length `travelled`.
+    fn at(contact: usize, way: f64, travelled: f64) -> Self {
         Self { until: travelled + way - DISTANCE_ROUND_OFF * (travelled + way), contact }
     }
 }
@@ -155,11 +156,12 @@ pub(crate) fn reached_within(scene: &Scene, at: &Progress, far: &mut FarContacts
     let (mut reached, mut left) = (Vec::new(), Vec::new());
     while far.peek().is_some_and(|next| next.until <= travelled + reach) {
         let Some(ContactOutOfReach { contact, .. }) = far.pop() else { break };
-        let gap = whole(scene, at).gap(contact, &at.here.state);
-        if gap / fastest(scene, contact) <= reach {
+        let state = &at.here.state;
+        let way = way_to_contact(scene, contact, &state.displacement, whole(scene, at).gap(contact, state));
+        if way <= reach {
             reached.push(contact);
         } else {
-            left.push(ContactOutOfReach::at(scene, contact, gap, travelled));
+            left.push(ContactOutOfReach::at(contact, way, travelled));
         }
     }
     far.extend(left);

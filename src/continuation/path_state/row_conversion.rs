@@ -4,8 +4,9 @@ use crate::branching::directions::feasible_direction::{DirectionChoice, is_worth
 use crate::continuation::path_state::force_rows;
 use crate::continuation::path_state::totals::Totals;
 use crate::continuation::scene::{Reported, Scene};
-use crate::mechanics::contact::vector::{add, dot, scaled};
+use crate::mechanics::contact::vector::{dot, scaled};
 use crate::mechanics::contact::{Mode, Reaction, tangents_in_space};
+use crate::mechanics::problem::contact_jacobian;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::natural_residual;
 use crate::mechanics::problem::node_contact_forces::{self, free_directions};
@@ -144,7 +145,7 @@ fn contact_rows(scene: &Scene, row: &RowSource<'_>, totals: &Totals) -> (Vec<Con
             // A node that moves along an obstacle without reaction slips, whether the equations solved are those of
             // slip or of no contact.
             let touches = |state: &State| loading.gap(index, state) <= CONTACT_TOLERANCE;
-            let moved = add(&loading.relative(index, row.state), -1.0, &loading.relative(index, row.before));
+            let moved = loading.relative_motion(index, row.before, row.state);
             let grazes = || {
                 loading.contacts[index].tangents() > 0
                     && touches(row.before)
@@ -162,7 +163,13 @@ fn contact_rows(scene: &Scene, row: &RowSource<'_>, totals: &Totals) -> (Vec<Con
                 normal: reaction.normal * one.normal_share,
                 tangential: scaled(&reaction.tangential, one.tangential_share),
             };
-            let in_space = node_contact_forces::force(&frame, &shared);
+            let in_axes = node_contact_forces::force(&frame, &shared);
+            let in_space = contact_jacobian::force_on_own_body(
+                &scene.structure,
+                &loading.contacts[index],
+                &row.state.displacement,
+                &in_axes,
+            );
             contact.reaction.iter_mut().zip(in_space).for_each(|(value, component)| *value = component * force);
             if is_active {
                 for (value, tangent) in contact.slip.iter_mut().zip(&tangents) {

@@ -5,7 +5,7 @@ use crate::continuation::penalty::law::{Penalties, PenaltyResponse, respond};
 use crate::continuation::penalty::tolerances::UNRESISTED_STIFFNESS;
 use crate::mechanics::contact::Reaction;
 use crate::mechanics::contact::coulomb::CoulombFriction;
-use crate::mechanics::contact::vector::{Vector, add, dot};
+use crate::mechanics::contact::vector::{Vector, dot};
 use crate::mechanics::problem::contact_jacobian;
 use crate::mechanics::problem::equilibrium;
 use crate::mechanics::problem::loading::Loading;
@@ -54,7 +54,7 @@ impl PenaltySystem<'_> {
         let mut contacts = Vec::with_capacity(from.contacts.len());
         for (index, (contact, before)) in self.loading.contacts.iter().zip(&from.contacts).enumerate() {
             let relative = self.loading.relative(index, state);
-            let moved = add(&relative, -1.0, &self.loading.relative(index, &from.state));
+            let moved = self.loading.relative_motion(index, &from.state, state);
             let friction = if contact.tangents() == 0 { CoulombFriction::SMOOTH } else { contact.friction };
             let response =
                 respond(self.penalties, friction, &contact.frame(&relative), &before.reaction.tangential, &moved);

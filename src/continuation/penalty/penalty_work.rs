@@ -45,7 +45,7 @@ pub fn work_and_dissipation(system: &PenaltySystem<'_>, from: &PenaltyPoint, to:
                 &from.state.displacement,
                 &change,
             );
-            let relative = add(&loading.relative(index, &to.state), -1.0, &loading.relative(index, &from.state));
+            let relative = loading.relative_motion(index, &from.state, &to.state);
             let obstacle = add(&moved, -1.0, &relative);
             work += 0.5 * dot(&add(&before.force, 1.0, &after.force), &obstacle);
         }

@@ -5,19 +5,21 @@ use crate::continuation::scene::elements::ElementBuilder;
 use crate::continuation::scene::requested_contacts::Reported;
 use crate::continuation::scene::solid_loads::{LoadedSolids, add_pressure_faces, pressed_surfaces};
 use crate::continuation::scene::stage_load::StageLoad;
-use crate::continuation::scene::tolerances::COINCIDENCE_TOLERANCE;
+use crate::continuation::scene::tolerances::{COINCIDENCE_TOLERANCE, SINGLE_MOTION};
 use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::kinematics::Kinematics;
 use crate::mechanics::contact::obstacle::RigidSurface;
 use crate::mechanics::contact::vector::{Vector, size};
 use crate::mechanics::contact::{ContactPair, Sliding};
 use crate::mechanics::equations::stage_end_criteria::End;
+use crate::mechanics::problem::contact_jacobian;
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::node_contact_forces::Corner;
 use crate::mechanics::structure::Structure;
 use crate::mechanics::structure::elements::solid::pressure_face::PRESSURE_UNIT;
 use crate::model::input::limits::PENETRATION_TOLERANCE;
 use crate::model::request::{self, Analysis, Model, Side};
+use crate::model::solids::contact_surfaces::{BodyContact, ContactSurfaces};
 use crate::resources::budget;
 use crate::result::plan::LeftOut;
 use indexmap::IndexMap;
@@ -77,17 +79,25 @@ pub(super) fn build_contacts(
     // By node and gap, so that only contacts of nearly the same gap are compared.
     let mut by_gap: HashMap<usize, BTreeMap<u64, Vec<usize>>> = HashMap::new();
     let curves = curves(model, length);
+    let surfaces = ContactSurfaces::new(model, length);
     for (index, contact) in model.contacts.iter().enumerate() {
         budget::spend(1);
         let node_number = numbers[contact.node.as_str()];
-        let built = build_contact(model, contact, node_number, length, structure, &curves);
+        let built = match contact.against {
+            Some(_) => match surfaces.contact(contact, node_number) {
+                Ok(body) => between_bodies(contact, body, structure),
+                // What was checked makes a contact.
+                Err(_) => continue,
+            },
+            None => build_contact(model, contact, node_number, length, structure, &curves),
+        };
         if !built.friction.is_rough() && contact.friction > 0.0 {
             left_out.push(LeftOut {
-                what: format!("friction of {} on {}", contact.node, contact.obstacle),
+                what: format!("friction of {} on {}", contact.node, contact.counterpart()),
                 why: "the node's supports leave it no motion along the obstacle".to_owned(),
             });
         }
-        let (node, obstacle) = (Arc::from(contact.node.as_str()), Arc::from(contact.obstacle.as_str()));
+        let (node, obstacle) = (Arc::from(contact.node.as_str()), Arc::from(contact.counterpart()));
         let moves_with = |other: &request::Contact| {
             let motion = |stage: &request::Stage, name: &str| stage.obstacle_motion.get(name).cloned();
             model.stages.iter().all(|stage| motion(stage, &contact.obstacle) == motion(stage, &other.obstacle))
@@ -183,7 +193,8 @@ fn coincide(first: &ContactPair, second: &ContactPair) -> bool {
         ) => (Arc::ptr_eq(a, b) || a == b) && near(x, y) && u == v,
         (RigidSurface::Plane { .. } | RigidSurface::Ball { .. } | RigidSurface::Curve { .. }, _) => false,
     };
-    first.kinematics.node() == second.kinematics.node()
+    first.kinematics.node().is_some()
+        && first.kinematics.node() == second.kinematics.node()
         && surfaces
         && (first.initial_gap - second.initial_gap).abs() <= COINCIDENCE_TOLERANCE
 }
@@ -248,6 +259,32 @@ fn build_contact(
     let coefficient = if sliding.directions() == 0 { 0.0 } else { contact.friction };
     let friction = CoulombFriction::new(coefficient);
     ContactPair { kinematics: Kinematics::Node(node), obstacle, initial_gap, friction, sliding }
+}
+
+/// A contact of bodies, in the axes of the surface that is touched.
+///
+/// Where supports leave the two surfaces a single relative motion at the node, as on an axis of symmetry, friction does no
+/// work of its own and its share of the reaction would be undetermined.
+fn between_bodies(contact: &request::Contact, body: BodyContact, structure: &Structure) -> ContactPair {
+    let mut built = ContactPair {
+        kinematics: Kinematics::Coupled(body.kinematics),
+        obstacle: RigidSurface::Plane { normal: [0.0, 1.0, 0.0] },
+        initial_gap: body.gap,
+        friction: CoulombFriction::new(contact.friction),
+        sliding: Sliding::Line { across: [0.0, 0.0, 1.0] },
+    };
+    let [mut along, mut across, mut both] = [0.0; 3];
+    contact_jacobian::each_column(structure, &built, &vec![0.0; structure.freedoms()], |freedom, column| {
+        if structure.unknown_of[freedom].is_some() {
+            along += column[0] * column[0];
+            across += column[1] * column[1];
+            both += column[0] * column[1];
+        }
+    });
+    if along * across - both * both <= SINGLE_MOTION * (along + across).powi(2) && across > 0.0 {
+        (built.friction, built.sliding) = (CoulombFriction::new(0.0), Sliding::None);
+    }
+    built
 }
 
 /// The directions in which a node can slide, given its supports.

@@ -1,8 +1,9 @@
 //! Features that a scene does not need, and why: the text of the plan.
 
 use crate::continuation::scene::Scene;
-use crate::continuation::scene::recorded_contacts::fastest;
+use crate::continuation::scene::recorded_contacts::way_to_contact;
 use crate::continuation::scene::tolerances::REACH_IN_STEPS;
+use crate::mechanics::contact::ContactPair;
 use crate::mechanics::structure::{MOST_ANALYSED, Structure};
 use crate::model::input::limits::MAX_ROWS_UNASKED;
 use crate::model::request::{Analysis, Method};
@@ -46,7 +47,7 @@ pub(crate) fn left_out(scene: &Scene) -> Vec<LeftOut> {
             &format!("they are looked for up to {MOST_ANALYSED} unknowns"),
         );
     }
-    if scene.structure.is_linear() {
+    if scene.structure.is_linear() && !scene.contacts.iter().any(ContactPair::is_curved) {
         leave("nonlinear iterations", "every element is linear: one correction is exact");
     }
     left_out.extend(penalty_method(analysis));
@@ -63,7 +64,8 @@ fn contacts_out_of_reach(scene: &Scene) -> Vec<LeftOut> {
     }
     let reach = REACH_IN_STEPS * analysis.arc_length.initial;
     let gap = |contact: usize| scene.contacts[contact].gap(&[0.0; 3]);
-    let is_far = |contact: &usize| gap(*contact) / fastest(scene, *contact) > reach;
+    let still = vec![0.0; scene.structure.freedoms()];
+    let is_far = |contact: &usize| way_to_contact(scene, *contact, &still, gap(*contact)) > reach;
     let far = (0..scene.contacts.len()).filter(is_far).count();
     let mut left_out = Vec::new();
     if far > 0 {

@@ -29,3 +29,7 @@ pub(crate) const SIMILAR_STIFFNESS_RATIO: f64 = 2.0;
 /// force scale. A bar farther away hardly takes part in the resistance, and the resisting stiffness itself is the
 /// scale; the bound is a heuristic that affects the length of increments, not their accuracy.
 pub(crate) const LARGEST_STIFFNESS_RATIO: f64 = 100.0;
+
+/// Squares of the areas between normal and tangential rows of a contact of bodies below this part of their sizes leave a
+/// single motion: the square of 1e-8, above which rows of round-off have other directions.
+pub(super) const SINGLE_MOTION: f64 = 1e-16;

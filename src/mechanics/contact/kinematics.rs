@@ -1,15 +1,15 @@
 //! The motion of a contact with the structure.
 //!
 //! ```text
-//! x = m(u)       ẋ = B(u) u̇       forces on the structure: Bᵀ r,   their derivative at constant r: Σ_k r_k ∂²m_k/∂u²
+//! x = m(u)       ẋ = B(u) u̇       forces on the structure: Bᵀ r,   their derivative at constant r: Σ_k r_k ∂B_k/∂u
 //! ```
 //!
 //! `x` is the position of the contact in the axes of its obstacle, relative to the undeformed position; obstacle, gap,
 //! normal and friction refer to these axes. For a node in front of a rigid obstacle `x` is the displacement of the node
 //! and `B` the identity. For a node in front of a surface of another body the axes move with this body, and `B` has
-//! columns for the nodes of both.
+//! columns for the nodes of both: see [`bodies`](super::bodies).
 
-use crate::mechanics::contact::vector::Vector;
+use crate::mechanics::contact::vector::{Vector, add};
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -22,13 +22,20 @@ pub enum Kinematics {
     Coupled(Arc<dyn CoupledKinematics>),
 }
 
-/// The motion of a contact that several nodes move together. All quantities are dimensionless.
-///
-/// `displacement` holds the degrees of freedom of these nodes, node by node: the translations of a node, then as many
-/// of its rotations as [`rotations`](Self::rotations) says. The reactions are work-conjugate to `x`.
+/// The degrees of freedom of the nodes of a contact: the value of each by its index, node by node in the order of
+/// [`CoupledKinematics::nodes`], the translations of a node before those of its rotations that move the contact.
+pub type LocalDisplacements<'a> = &'a dyn Fn(usize) -> f64;
+
+/// The motion of a contact that several nodes move together. All quantities are dimensionless; the reactions are
+/// work-conjugate to `ẋ`.
 pub trait CoupledKinematics: Debug + Send + Sync {
-    /// The nodes that move the contact, each once.
+    /// The nodes that may move the contact, each once; the first is the one that the contact is named after.
     fn nodes(&self) -> &[usize];
+
+    /// How many of the nodes, from the first, belong to the body of the node that the contact is named after.
+    fn own_nodes(&self) -> usize {
+        1
+    }
 
     /// The number of rotations of each node that move the contact.
     fn rotations(&self) -> usize {
@@ -36,23 +43,34 @@ pub trait CoupledKinematics: Debug + Send + Sync {
     }
 
     /// The position `m(u)` of the contact; zero at zero displacement.
-    fn place(&self, displacement: &[f64]) -> Vector;
+    fn place(&self, displacement: LocalDisplacements<'_>) -> Vector;
 
-    /// Writes the columns of `B(u)`, one per degree of freedom.
-    fn write_columns(&self, displacement: &[f64], columns: &mut [Vector]);
-
-    /// A bound on the change of the gap under a unit motion of the degrees of freedom, valid at all displacements;
-    /// infinite where no bound is known: the contact then always counts as within reach.
-    fn fastest(&self) -> f64 {
-        f64::INFINITY
+    /// The motion `∫ B du` between two positions of one path, not far from each other.
+    fn motion(&self, from: LocalDisplacements<'_>, to: LocalDisplacements<'_>) -> Vector {
+        add(&self.place(to), -1.0, &self.place(from))
     }
 
-    /// Writes `Σ_k r_k ∂²m_k/∂u²`, row by row.
-    fn write_curvature(&self, displacement: &[f64], force: &Vector, curvature: &mut [f64]);
+    /// Calls `each` with the index of a degree of freedom and its column of `B(u)`; columns of zeros may be left out.
+    fn each_column(&self, displacement: LocalDisplacements<'_>, each: &mut dyn FnMut(usize, &Vector));
+
+    /// Calls `add` with row, column and value of the entries of `Σ_k r_k ∂B_k/∂u`; zeros may be left out. The matrix is
+    /// not symmetric where rows of `B` are no gradients.
+    fn each_curvature(
+        &self,
+        displacement: LocalDisplacements<'_>,
+        force: &Vector,
+        add: &mut dyn FnMut(usize, usize, f64),
+    );
+
+    /// A distance that has to be covered before the contact can close, and by how much a unit motion of the degrees of
+    /// freedom shortens it at most; `None` where no bound is known: the contact then always counts as within reach.
+    fn clearance(&self, _displacement: LocalDisplacements<'_>) -> Option<(f64, f64)> {
+        None
+    }
 }
 
 impl Kinematics {
-    /// The nodes that move the contact.
+    /// The nodes that move the contact; the first is the one that the contact is named after.
     pub fn nodes(&self) -> &[usize] {
         match self {
             Self::Node(node) => std::slice::from_ref(node),
@@ -60,11 +78,11 @@ impl Kinematics {
         }
     }
 
-    /// A bound on the change of the gap under a unit motion of the degrees of freedom.
-    pub fn fastest(&self) -> f64 {
+    /// The nodes of the body of the node that the contact is named after.
+    pub fn own_nodes(&self) -> &[usize] {
         match self {
-            Self::Node(_) => 1.0,
-            Self::Coupled(coupled) => coupled.fastest(),
+            Self::Node(node) => std::slice::from_ref(node),
+            Self::Coupled(coupled) => &coupled.nodes()[..coupled.own_nodes()],
         }
     }
 

@@ -7,6 +7,7 @@
 //! All quantities are dimensionless. Tractions and slips are vectors in space, so that they keep their meaning wherever
 //! the node is on a curved obstacle; in 2D the third component is 0. The module knows nothing of structures and paths.
 
+pub mod bodies;
 pub mod coulomb;
 pub(crate) mod frame;
 pub mod kinematics;
@@ -123,6 +124,11 @@ impl ContactPair {
     pub fn frame(&self, relative: &Vector) -> Frame {
         let (change, normal, curvature) = self.obstacle.distance(relative);
         Frame::new(self.initial_gap + change, normal, curvature, self.sliding)
+    }
+
+    /// Whether the forces of a constant reaction change with the positions of the nodes.
+    pub fn is_curved(&self) -> bool {
+        self.obstacle.is_curved() || self.kinematics.node().is_none()
     }
 
     /// Number of tangential reactions: 0 without friction.

@@ -346,7 +346,7 @@ impl<'a> ModeSystem<'a> {
 
     /// The motion relative to the obstacle since the anchor.
     pub(crate) fn chord(&self, contact: usize, state: &State) -> Vector {
-        add(&self.loading.relative(contact, state), -1.0, &self.loading.relative(contact, self.anchor))
+        self.loading.relative_motion(contact, self.anchor, state)
     }
 
     /// The direction of a slip at an iterate; zero without friction.

@@ -10,22 +10,14 @@ use crate::mechanics::contact::ContactPair;
 use crate::mechanics::contact::kinematics::{CoupledKinematics, Kinematics};
 use crate::mechanics::contact::vector::{Vector, add, dot};
 use crate::mechanics::structure::Structure;
-use smallvec::SmallVec;
 
 /// The unit vectors of the axes.
 pub(crate) const AXES: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// The degrees of freedom that move a coupled contact, and their values.
-fn gathered(
-    structure: &Structure,
-    coupled: &dyn CoupledKinematics,
-    values: &[f64],
-) -> (SmallVec<[usize; 12]>, SmallVec<[f64; 12]>) {
+/// The degree of freedom of the structure for each that moves a coupled contact.
+fn freedom_of<'a>(structure: &'a Structure, coupled: &'a dyn CoupledKinematics) -> impl Fn(usize) -> usize + 'a {
     let count = structure.dimension + coupled.rotations();
-    let of_node = |node: &usize| structure.numbering.freedoms_of(*node).take(count);
-    let freedoms: SmallVec<[usize; 12]> = coupled.nodes().iter().flat_map(of_node).collect();
-    let own = freedoms.iter().map(|freedom| values[*freedom]).collect();
-    (freedoms, own)
+    move |at| structure.numbering.freedoms_of(coupled.nodes()[at / count]).start + at % count
 }
 
 /// The displacement `m(u)` of a contact, in the axes of its obstacle.
@@ -33,8 +25,45 @@ fn gathered(
 pub fn moved(structure: &Structure, contact: &ContactPair, displacement: &[f64]) -> Vector {
     match &contact.kinematics {
         Kinematics::Node(node) => structure.translation_at(*node, displacement),
-        Kinematics::Coupled(coupled) => coupled.place(&gathered(structure, coupled.as_ref(), displacement).1),
+        Kinematics::Coupled(coupled) => {
+            let freedom = freedom_of(structure, coupled.as_ref());
+            coupled.place(&|at| displacement[freedom(at)])
+        }
     }
+}
+
+/// The motion `∫ B du` of a coupled contact between two positions of one path, in the axes of its obstacle; `None` for a
+/// single node, whose motion is the difference of its positions.
+#[inline(always)]
+pub fn coupled_motion(structure: &Structure, contact: &ContactPair, from: &[f64], to: &[f64]) -> Option<Vector> {
+    let Kinematics::Coupled(coupled) = &contact.kinematics else { return None };
+    let freedom = freedom_of(structure, coupled.as_ref());
+    Some(coupled.motion(&|at| from[freedom(at)], &|at| to[freedom(at)]))
+}
+
+/// A distance that has to be covered before a contact can close, and by how much a unit motion of the degrees of freedom
+/// shortens it at most; the gap of a single node bounds itself. A contact without a bound has no distance to cover.
+pub fn clearance(structure: &Structure, contact: &ContactPair, displacement: &[f64], gap: f64) -> (f64, f64) {
+    match &contact.kinematics {
+        Kinematics::Node(_) => (gap, 1.0),
+        Kinematics::Coupled(coupled) => {
+            let freedom = freedom_of(structure, coupled.as_ref());
+            coupled.clearance(&|at| displacement[freedom(at)]).unwrap_or((0.0, 1.0))
+        }
+    }
+}
+
+/// The force of a contact on the body of the node that the contact is named after, in the axes of space: most of it acts
+/// on this node, and all of it where the surfaces fit each other.
+pub fn force_on_own_body(structure: &Structure, contact: &ContactPair, displacement: &[f64], force: &Vector) -> Vector {
+    let mut total = [0.0; 3];
+    each_column(structure, contact, displacement, |freedom, column| {
+        let mut own = contact.kinematics.own_nodes().iter().map(|node| structure.translations_of(*node));
+        if let Some(translations) = own.find(|translations| translations.contains(&freedom)) {
+            total[freedom - translations.start] += dot(column, force);
+        }
+    });
+    total
 }
 
 /// The velocity `B(u) u̇` of a contact.
@@ -63,10 +92,8 @@ pub fn each_column(
             structure.translations_of(*node).zip(&AXES).for_each(|(freedom, axis)| each(freedom, axis));
         }
         Kinematics::Coupled(coupled) => {
-            let (freedoms, own) = gathered(structure, coupled.as_ref(), displacement);
-            let mut columns: SmallVec<[Vector; 12]> = SmallVec::from_elem([0.0; 3], freedoms.len());
-            coupled.write_columns(&own, &mut columns);
-            freedoms.iter().zip(&columns).for_each(|(freedom, column)| each(*freedom, column));
+            let freedom = freedom_of(structure, coupled.as_ref());
+            coupled.each_column(&|at| displacement[freedom(at)], &mut |at, column| each(freedom(at), column));
         }
     }
 }
@@ -93,10 +120,8 @@ pub fn each_curvature(
     mut add: impl FnMut(usize, usize, f64),
 ) {
     let Kinematics::Coupled(coupled) = &contact.kinematics else { return };
-    let (freedoms, own) = gathered(structure, coupled.as_ref(), displacement);
-    let mut curvature: SmallVec<[f64; 36]> = SmallVec::from_elem(0.0, freedoms.len() * freedoms.len());
-    coupled.write_curvature(&own, force, &mut curvature);
-    for (row, values) in freedoms.iter().zip(curvature.chunks_exact(freedoms.len())) {
-        freedoms.iter().zip(values).for_each(|(column, value)| add(*row, *column, *value));
-    }
+    let freedom = freedom_of(structure, coupled.as_ref());
+    coupled.each_curvature(&|at| displacement[freedom(at)], force, &mut |row, column, value| {
+        add(freedom(row), freedom(column), value);
+    });
 }

@@ -6,7 +6,7 @@ use crate::mechanics::problem::loading::Loading;
 
 /// Whether a contact leaves the path of linear elements piecewise straight.
 pub(crate) fn is_straight(contact: &ContactPair) -> bool {
-    let plane = matches!(contact.obstacle, RigidSurface::Plane { .. });
+    let plane = matches!(contact.obstacle, RigidSurface::Plane { .. }) && contact.kinematics.node().is_some();
     plane && (!contact.friction.is_rough() || contact.sliding != Sliding::Plane)
 }
 

@@ -70,6 +70,16 @@ impl Loading<'_> {
         add(&shifted, -state.load, &self.pattern.shifts[contact])
     }
 
+    /// The motion of a contact less that of its obstacle between two states of one path.
+    #[inline(always)]
+    pub fn relative_motion(&self, contact: usize, from: &State, to: &State) -> Vector {
+        let data = &self.contacts[contact];
+        match contact_jacobian::coupled_motion(self.structure, data, &from.displacement, &to.displacement) {
+            Some(moved) => add(&moved, from.load - to.load, &self.pattern.shifts[contact]),
+            None => add(&self.relative(contact, to), -1.0, &self.relative(contact, from)),
+        }
+    }
+
     /// The velocity of a contact less that of its obstacle at a state.
     #[inline(always)]
     pub fn relative_rate(&self, contact: usize, state: &State, rate: &Rate) -> Vector {

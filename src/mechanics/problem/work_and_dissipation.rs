@@ -12,7 +12,7 @@
 //! length; the chord `S` between directions that differ by an angle `θ` spans `S (1 + θ²/24)` of it.
 
 use crate::mechanics::contact::Mode;
-use crate::mechanics::contact::vector::{add, dot as inner};
+use crate::mechanics::contact::vector::dot as inner;
 use crate::mechanics::problem::contact_jacobian;
 use crate::mechanics::problem::equilibrium;
 use crate::mechanics::problem::loading::Loading;
@@ -78,7 +78,7 @@ pub fn work_and_dissipation(
         if !matches!(mode, Mode::Slip { .. }) || contact.tangents() == 0 {
             continue;
         }
-        let chord = add(&loading.relative(index, end.0), -1.0, &loading.relative(index, start.0));
+        let chord = loading.relative_motion(index, start.0, end.0);
         let [first, last] = [start, end].map(|at| loading.relative_rate(index, at.0, at.1));
         for k in 0..loading.structure.dimension {
             let traction = Ends {

@@ -75,7 +75,7 @@ pub(super) fn recorded(record: &Record, model: &Model, at: &DocumentPlace, mista
     recorded_elements(record, model, at, mistakes);
     recorded_supports(record, model, at, mistakes);
     let contacts: HashSet<(&str, &str)> =
-        model.contacts.iter().map(|contact| (contact.node.as_str(), contact.obstacle.as_str())).collect();
+        model.contacts.iter().map(|contact| (contact.node.as_str(), contact.counterpart())).collect();
     let mut seen = HashSet::new();
     for (index, RecordedContact { node, obstacle }) in record.named_contacts().into_iter().flatten().enumerate() {
         let at = &at.member("contacts");
@@ -84,7 +84,7 @@ pub(super) fn recorded(record: &Record, model: &Model, at: &DocumentPlace, mista
         if !model.nodes.contains_key(node) {
             let known = || suggestion(node, model.nodes.keys().map(String::as_str));
             mistakes.add(&at.member("node"), || format!("there is no node {}{}", quoted(node), known()));
-        } else if !model.obstacles.contains_key(obstacle) {
+        } else if !model.obstacles.contains_key(obstacle) && !contacts.iter().any(|(_, name)| name == obstacle) {
             let known = || suggestion(obstacle, model.obstacles.keys().map(String::as_str));
             mistakes.add(&at.member("obstacle"), || format!("there is no obstacle {}{}", quoted(obstacle), known()));
         } else if !contacts.contains(&pair) {

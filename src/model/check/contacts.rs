@@ -6,8 +6,9 @@ use crate::model::check::numbers::{self, dot};
 use crate::model::check::obstacles::{Curves, Facing, facing};
 use crate::model::check::scope::Scope;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
-use crate::model::input::names::quoted;
+use crate::model::input::names::{quoted, suggestion};
 use crate::model::request::{Contact, Obstacle, Polyline, Side};
+use crate::model::solids::contact_surfaces::ContactSurfaces;
 use crate::resources::budget;
 
 /// Unit normals whose product is this near -1 are opposed.
@@ -28,10 +29,17 @@ pub(super) fn contacts(scope: &Scope, curves: &Curves, mistakes: &mut Mistakes) 
     let at = scope.at.member("contacts");
     let mut seen = HashSet::new();
     let mut gaps: HashMap<usize, Vec<Gap>> = HashMap::new();
+    let surfaces = ContactSurfaces::new(scope.model, 1.0);
     for (index, contact) in scope.model.contacts.iter().enumerate() {
         let at = at.index(index);
         friction(contact, &at.member("friction"), mistakes);
         let node = scope.node(&contact.node, &at.member("node"), mistakes);
+        if contact.against.is_some() {
+            if let Some(node) = node {
+                between_bodies(scope, &surfaces, contact, node, &at, mistakes);
+            }
+            continue;
+        }
         let obstacle = scope.obstacle(&contact.obstacle, &at.member("obstacle"), mistakes);
         let (Some(node), Some((number, obstacle))) = (node, obstacle) else { continue };
         let Some(facing) = facing(scope, node, obstacle, curves[number].as_ref()) else { continue };
@@ -49,6 +57,41 @@ pub(super) fn contacts(scope: &Scope, curves: &Curves, mistakes: &mut Mistakes) 
             room(contact, &gap, others, &at, mistakes);
             others.push(gap);
         }
+    }
+}
+
+fn between_bodies(
+    scope: &Scope,
+    surfaces: &ContactSurfaces,
+    contact: &Contact,
+    node: usize,
+    at: &DocumentPlace,
+    mistakes: &mut Mistakes,
+) {
+    budget::spend(1);
+    for (member, name) in [("surface", contact.surface.as_deref()), ("against", contact.against.as_deref())] {
+        let Some(name) = name.filter(|name| !scope.model.surfaces.contains_key(*name)) else { continue };
+        mistakes.add(&at.member(member), || {
+            let known = suggestion(name, scope.model.surfaces.keys().map(String::as_str));
+            format!("there is no surface {}{known}", quoted(name))
+        });
+        return;
+    }
+    let against = contact.against.as_deref().unwrap_or_default();
+    if scope.model.obstacles.contains_key(against) {
+        mistakes.add(&at.member("against"), || {
+            format!("an obstacle has the name {}, too; increments name what is touched: rename one", quoted(against))
+        });
+        return;
+    }
+    match surfaces.contact(contact, node) {
+        Ok(body) => {
+            let moves = body.kinematics.nodes().iter().any(|node| scope.has_free_component(*node));
+            if !moves {
+                mistakes.add(at, || "no node of the two surfaces can move freely; leave the contact out");
+            }
+        }
+        Err((member, mistake)) => mistakes.add(&at.member(member), || mistake),
     }
 }
 

@@ -46,7 +46,7 @@ fn driving(scope: &Scope) -> Vec<bool> {
 
 fn used(scope: &Scope) -> Vec<Use> {
     let mut used = vec![Use::None; scope.model.obstacles.len()];
-    for contact in &scope.model.contacts {
+    for contact in scope.model.contacts.iter().filter(|contact| contact.against.is_none()) {
         let found = if contact.friction > 0.0 { Use::Frictional } else { Use::Frictionless };
         match scope.model.obstacles.get_index_of(&contact.obstacle) {
             Some(obstacle) => used[obstacle] = used[obstacle].max(found),

@@ -7,6 +7,7 @@ use crate::model::check::scope::Scope;
 use crate::model::input::mistakes::Mistakes;
 use crate::model::input::names::quoted;
 use crate::model::request::Element;
+use std::collections::HashSet;
 
 pub(super) fn mechanism(scope: &Scope, mistakes: &mut Mistakes) {
     // Because of a misspelt name, which has been reported, a part could look unconnected.
@@ -40,6 +41,11 @@ fn note_loose_parts(scope: &Scope, mistakes: &mut Mistakes) {
     }
     for node in scope.model.contacts.iter().filter_map(|contact| number(&contact.node)) {
         held[node] = true;
+    }
+    let against: HashSet<&str> =
+        scope.model.contacts.iter().filter_map(|contact| contact.against.as_deref()).collect();
+    for (_, surface) in scope.model.surfaces.iter().filter(|(name, _)| against.contains(name.as_str())) {
+        surface.faces.iter().flatten().filter_map(number).for_each(|node| held[node] = true);
     }
     note(scope, &has_element, &parts.loose(&held), mistakes);
 }

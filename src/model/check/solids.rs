@@ -11,6 +11,7 @@ use crate::model::input::names::{quoted, suggestion};
 use crate::model::request::{ElasticConstants, Element, Material, PlaneCondition, Solid, Stage, Surface};
 use crate::model::solids::data;
 use crate::model::solids::faces::{FaceMatch, surface_faces};
+use std::collections::HashSet;
 
 pub(super) fn materials(scope: &Scope, mistakes: &mut Mistakes) {
     let at = scope.at.member("materials");
@@ -162,11 +163,11 @@ pub(super) fn surfaces(scope: &Scope, mistakes: &mut Mistakes) {
                 continue;
             }
             match face {
-                FaceMatch::Face(_) => {}
+                FaceMatch::Face(_) | FaceMatch::Side(_) => {}
                 FaceMatch::None => mistakes.add(&at, || {
                     let listed: Vec<String> = nodes.iter().map(|node| quoted(node).to_string()).collect();
                     format!(
-                        "no solid has a face of the nodes {}; all nodes of one face are expected",
+                        "no solid has a face of the nodes {}, and in the plane no bar or beam joins them; all nodes of one face are expected",
                         listed.join(", ")
                     )
                 }),
@@ -203,17 +204,22 @@ pub(super) fn loads(scope: &Scope, stage: &Stage, at: &DocumentPlace, mistakes: 
             loaded |= solids.filter(|(_, solid)| solid.material == *name).any(|(_, solid)| moves(&solid.nodes, force));
         }
     }
+    let sides = if stage.tractions.is_empty() && stage.pressures.is_empty() {
+        HashSet::new()
+    } else {
+        sides_of_bars(scope)
+    };
     let at_tractions = at.member("tractions");
     for (name, traction) in &stage.tractions {
         let at = at_tractions.member(name);
-        let surface = known_surface(scope, name, &at, mistakes);
+        let surface = known_surface(scope, &sides, name, &at, mistakes);
         let sane = numbers::vector(traction, dimension, &at, mistakes);
         loaded |= sane && surface.is_some_and(|surface| surface.faces.iter().any(|face| moves(face, traction)));
     }
     let at_pressures = at.member("pressures");
     for (name, pressure) in &stage.pressures {
         let at = at_pressures.member(name);
-        let surface = known_surface(scope, name, &at, mistakes);
+        let surface = known_surface(scope, &sides, name, &at, mistakes);
         let sane = numbers::number(*pressure, &at, mistakes);
         // The surface may turn: it presses along every axis.
         let pressed = vec![*pressure; dimension];
@@ -222,8 +228,16 @@ pub(super) fn loads(scope: &Scope, stage: &Stage, at: &DocumentPlace, mistakes: 
     loaded
 }
 
+/// Names of surfaces with faces that are sides of bars or beams.
+fn sides_of_bars<'a>(scope: &Scope<'a>) -> HashSet<&'a str> {
+    let surfaces = scope.model.surfaces.keys().zip(surface_faces(scope.model));
+    let has_side = |faces: &[FaceMatch]| faces.iter().any(|face| matches!(face, FaceMatch::Side(_)));
+    surfaces.filter(|(_, faces)| has_side(faces)).map(|(name, _)| name.as_str()).collect()
+}
+
 fn known_surface<'a>(
     scope: &Scope<'a>,
+    sides: &HashSet<&str>,
     name: &str,
     at: &DocumentPlace,
     mistakes: &mut Mistakes,
@@ -233,6 +247,11 @@ fn known_surface<'a>(
         mistakes.add(at, || {
             let known = suggestion(name, scope.model.surfaces.keys().map(String::as_str));
             format!("there is no surface {}{known}", quoted(name))
+        });
+    }
+    if sides.contains(name) {
+        mistakes.add(at, || {
+            format!("{} has faces that are sides of bars or beams; only solids take such loads", quoted(name))
         });
     }
     surface

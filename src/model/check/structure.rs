@@ -72,7 +72,7 @@ pub(super) fn unexpanded(model: &Model, at: &DocumentPlace, mistakes: &mut Mista
     for (name, _) in model.surfaces.iter().filter(|(_, surface)| surface.group.is_some()) {
         mistakes.add(&at.member("surfaces").member(name).member("group"), || UNEXPANDED);
     }
-    for (index, _) in model.contacts.iter().enumerate().filter(|(_, contact)| contact.surface.is_some()) {
+    for (index, _) in model.contacts.iter().enumerate().filter(|(_, contact)| contact.names_whole_surface()) {
         mistakes.add(&at.member("contacts").index(index).member("surface"), || UNEXPANDED);
     }
 }

@@ -7,7 +7,7 @@ use crate::model::decode::reader::{Choices, Fields, Input, count, number, number
 use crate::model::decode::{meshes, obstacles, solids};
 use crate::model::input::mistakes::Mistakes;
 use crate::model::request::{
-    BendingStiffness, Component, Contact, DisplacementBound, Element, Model, Stage, Strain, Units, Until,
+    BendingStiffness, Component, Contact, ContactDiscretisation, DisplacementBound, Element, Model, Stage, Strain, Units, Until,
 };
 
 const MODEL: Fields = Fields {
@@ -61,8 +61,14 @@ const SPRING: Fields = Fields { what: "a spring", known: &["kind", "nodes", "sti
 
 const CONTACT: Fields = Fields {
     what: "a contact",
-    known: &["node", "surface", "obstacle", "friction"],
-    later: &[("against", "rigid obstacles can be touched, other bodies not yet")],
+    known: &["node", "surface", "obstacle", "against", "discretisation", "friction"],
+    later: &[],
+};
+
+const DISCRETISATION: Choices<ContactDiscretisation> = Choices {
+    what: "a discretisation of contact",
+    known: &[("mortar", ContactDiscretisation::Mortar), ("node_to_surface", ContactDiscretisation::NodeToSurface)],
+    later: &[],
 };
 
 const STAGE: Fields = Fields {
@@ -303,12 +309,23 @@ fn contact(input: &Input, mistakes: &mut Mistakes) -> Option<Contact> {
         Some(_) => object.with_default("node", String::new(), mistakes, text),
         None => object.required("node", mistakes, text),
     };
-    if surface.is_some() && node.as_deref().is_some_and(|node| !node.is_empty()) {
-        return input.note("`node` and `surface` are given; one of the two is expected", mistakes);
-    }
-    let obstacle = object.required("obstacle", mistakes, text);
+    let against = object.optional("against", mistakes, text)?;
+    let discretisation = object.optional("discretisation", mistakes, |input, mistakes| {
+        input.choice(&DISCRETISATION, mistakes)
+    });
     let friction = object.with_default("friction", 0.0, mistakes, number);
-    Some(Contact { node: node?, surface, obstacle: obstacle?, friction: friction? })
+    let obstacle = match &against {
+        Some(_) => object.with_default("obstacle", String::new(), mistakes, text),
+        None => object.required("obstacle", mistakes, text),
+    };
+    let (node, obstacle, discretisation) = (node?, obstacle?, discretisation?);
+    let mistake = match &against {
+        None if surface.is_some() && !node.is_empty() => "`node` and `surface` are given; one of the two is expected",
+        None if discretisation.is_some() => "`discretisation` is of contacts `against` a surface; leave it out",
+        Some(_) if !obstacle.is_empty() => "`obstacle` and `against` are given; one of the two is expected",
+        _ => return Some(Contact { node, surface, obstacle, against, discretisation, friction: friction? }),
+    };
+    input.note(mistake, mistakes)
 }
 
 fn stage(input: &Input, mistakes: &mut Mistakes) -> Option<Stage> {

@@ -115,7 +115,7 @@ fn uses_sets(model: &Model, analysis: &Analysis) -> bool {
         record.nodes.iter().flatten().chain(supports).chain(contacts).chain(elements)
     });
     let of_contacts = model.contacts.iter().map(|contact| &contact.node);
-    if model.contacts.iter().any(|contact| contact.surface.is_some()) {
+    if model.contacts.iter().any(Contact::names_whole_surface) {
         return true;
     }
     model.supports.keys().chain(of_contacts).chain(of_stages).chain(recorded).any(|name| is_group(name))
@@ -291,9 +291,13 @@ impl<'a> Groups<'a> {
         let mut all = Vec::with_capacity(given.len());
         for (index, mut contact) in given.into_iter().enumerate() {
             let place = at.index(index);
-            let member = if contact.surface.is_some() { "surface" } else { "node" };
-            if let Some(surface) = contact.surface.take() {
+            let member = if contact.names_whole_surface() { "surface" } else { "node" };
+            if contact.names_whole_surface()
+                && let Some(surface) = &contact.surface
+            {
                 contact.node = format!("@{surface}");
+                // Which faces a node is part of matters to what other bodies it touches.
+                contact.surface = contact.surface.take_if(|_| contact.against.is_some());
             }
             match self.members(&contact.node, &place.member(member), mistakes) {
                 Members::Own => all.push(contact),

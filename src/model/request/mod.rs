@@ -26,7 +26,7 @@ pub use record::{
     RecordedSupports,
 };
 pub use structure::{
-    BendingStiffness, Component, Contact, ContentEncoding, DisplacementBound, ElasticConstants, Element, Material,
+    BendingStiffness, Component, Contact, ContactDiscretisation, ContentEncoding, DisplacementBound, ElasticConstants, Element, Material,
     MeshFile, MeshFormat, MeshGroup, Model, NamedSet, Obstacle, PlaneCondition, Polyline, Side, Solid, Stage, Surface,
     Units, Until,
 };

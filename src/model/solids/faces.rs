@@ -1,7 +1,8 @@
 //! The faces of the solids that a model's surfaces name.
 
 use crate::mechanics::structure::elements::solid::shapes::faces::{FaceKind, faces_of};
-use crate::model::request::{Model, Surface};
+use crate::model::request::{Element, Model, Surface};
+use itertools::Itertools;
 use std::collections::HashMap;
 
 /// A face of a solid as the solid has it: its normal points out of the solid.
@@ -19,6 +20,8 @@ pub(crate) struct SolidFace {
 pub(crate) enum FaceMatch {
     /// The face of one solid.
     Face(SolidFace),
+    /// A bar or a beam between two nodes, its side to the left of their order.
+    Side([usize; 2]),
     /// No solid has it.
     None,
     /// Two solids have it, or more: it is inside the body.
@@ -56,13 +59,33 @@ pub(crate) fn surface_faces(model: &Model) -> Vec<Vec<FaceMatch>> {
                     *entry = match entry {
                         FaceMatch::None => FaceMatch::Face(SolidFace { element, kind: face_kind, nodes }),
                         FaceMatch::Face(_) | FaceMatch::Inside => FaceMatch::Inside,
+                        FaceMatch::Side(_) => continue,
                     };
                 }
             }
         }
+        for element in &model.elements {
+            let (Element::Bar { nodes, .. } | Element::Beam { nodes, .. }, 2) = (element, model.dimension) else {
+                continue;
+            };
+            let numbers = nodes.iter().filter_map(|name| model.nodes.get_index_of(name)).sorted_unstable();
+            if let Some(entry @ FaceMatch::None) = found.get_mut(numbers.collect::<Vec<_>>().as_slice())
+                && nodes.len() == 2
+            {
+                *entry = FaceMatch::Side([0; 2]);
+            }
+        }
     }
-    let of_face = |nodes: &Option<Vec<usize>>| {
-        nodes.as_ref().and_then(|nodes| found.get(nodes.as_slice())).cloned().unwrap_or(FaceMatch::None)
+    let of_face = |(nodes, names): (&Option<Vec<usize>>, &Vec<String>)| {
+        let found = nodes.as_ref().and_then(|nodes| found.get(nodes.as_slice())).cloned().unwrap_or(FaceMatch::None);
+        match (found, names.as_slice()) {
+            (FaceMatch::Side(_), [first, last]) => {
+                let numbers = [first, last].map(|name| model.nodes.get_index_of(name).unwrap_or(0));
+                FaceMatch::Side(numbers)
+            }
+            (found, _) => found,
+        }
     };
-    wanted.iter().map(|faces| faces.iter().map(of_face).collect()).collect()
+    let named = wanted.iter().zip(model.surfaces.values());
+    named.map(|(wanted, surface)| wanted.iter().zip(&surface.faces).map(of_face).collect()).collect()
 }

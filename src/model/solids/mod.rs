@@ -1,4 +1,5 @@
-//! The solids of a model in the terms of mechanics.
+//! The solids of a model and their surfaces in the terms of mechanics.
 
+pub(crate) mod contact_surfaces;
 pub(crate) mod data;
 pub(crate) mod faces;

@@ -29,7 +29,7 @@
 //! closed (their reactions need not be unique): then the program is solved.
 
 use crate::complementarity::mpec::{Activities, PairActivity, Problem, Settings};
-use crate::mechanics::contact::vector::{Vector, add, dot};
+use crate::mechanics::contact::vector::{Vector, dot};
 use crate::mechanics::contact::{Frame, Mode};
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::increment_mpec::solution_extraction;
@@ -142,8 +142,7 @@ pub(super) fn variables_of(program: &IncrementProgram<'_>, state: &State, frames
 
 /// The motion of a contact relative to its obstacle since the start of the increment.
 fn chord(program: &IncrementProgram<'_>, entry: &InReach, state: &State) -> Vector {
-    let before = program.loading.relative(entry.contact, program.base);
-    add(&program.loading.relative(entry.contact, state), -1.0, &before)
+    program.loading.relative_motion(entry.contact, program.base, state)
 }
 
 /// The zero member of each pair, where the variables are feasible and the members are certain.

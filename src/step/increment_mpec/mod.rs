@@ -41,7 +41,7 @@ pub(crate) mod tolerances;
 
 use crate::complementarity::mpec::{self, Finish, PairActivity, ProgramSolution, Settings, StationarityKind};
 use crate::mechanics::contact::coulomb::CoulombFriction;
-use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
+use crate::mechanics::contact::vector::{Vector, dot, scaled};
 use crate::mechanics::contact::{Frame, Mode};
 use crate::mechanics::equations::slip_integration::Start;
 use crate::mechanics::problem::loading::Loading;
@@ -417,8 +417,7 @@ impl<'a> IncrementProgram<'a> {
     fn motion_at(&self, entry: &InReach, state: &State, x: &DVector<f64>) -> Components {
         let structure = self.loading.structure;
         if self.loading.contacts[entry.contact].kinematics.node().is_none() {
-            let before = self.loading.relative(entry.contact, self.base);
-            let chord = add(&self.loading.relative(entry.contact, state), -1.0, &before);
+            let chord = self.loading.relative_motion(entry.contact, self.base, state);
             return tangent_components::components(&entry.frame, &chord).map(|part| part / self.step);
         }
         let driven = tangent_components::components(&entry.frame, &self.loading.driven(entry.contact, state));

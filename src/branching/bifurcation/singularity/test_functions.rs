@@ -95,7 +95,7 @@ fn counted_modes<'s>(
 ) -> Option<(Vec<Mode>, &'s State)> {
     let unknowns = loading.structure.unknowns();
     if unknowns < 2
-        || (loading.structure.is_linear() && !loading.contacts.iter().any(|contact| contact.obstacle.is_curved()))
+        || (loading.structure.is_linear() && !loading.contacts.iter().any(ContactPair::is_curved))
     {
         return None;
     }

@@ -22,7 +22,7 @@ pub use element::{BendingStiffness, Element};
 pub use material::{ElasticConstants, Material};
 pub use mesh::{ContentEncoding, MeshFile, MeshGroup};
 pub use model::{Model, Units};
-pub use obstacle::{Contact, Obstacle, Side};
+pub use obstacle::{Contact, ContactDiscretisation, Obstacle, Side};
 pub use polyline::Polyline;
 pub use solid::{PlaneCondition, Solid};
 pub use stage::{DisplacementBound, Stage, Until};

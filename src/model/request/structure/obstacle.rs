@@ -77,28 +77,71 @@ pub enum Side {
     Inside,
 }
 
-/// A node, or the nodes of a surface, against an obstacle.
+/// A node, or the nodes of a surface, against an obstacle or the surface of another body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
-    /// Name of the node; `@` and a name: the nodes of a set or surface. Absent where `surface` is given.
+    /// Name of the node; `@` and a name: the nodes of a set or surface. Absent where a whole `surface` touches.
     #[serde(default)]
     pub node: String,
-    /// Name of a surface, whose nodes touch, in place of `node`.
+    /// Name of a surface, whose nodes touch, in place of `node`. With `against` both may be given: a node of the surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surface: Option<String>,
-    /// Name of the obstacle.
+    /// Name of the obstacle. Absent where `against` is given.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub obstacle: String,
+    /// Name of the surface of another body, in place of `obstacle`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub against: Option<String>,
+    /// How a contact of bodies is discretised; `mortar` when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub discretisation: Option<ContactDiscretisation>,
     /// Coulomb's coefficient, 0 or more; 0 is frictionless.
     #[serde(default)]
     #[cfg_attr(feature = "server", schema(minimum = 0.0))]
     pub friction: f64,
 }
 
+/// How contacts of bodies are discretised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum ContactDiscretisation {
+    /// Mean gaps and slips over the faces at each node of the surface: passes the patch test.
+    #[default]
+    Mortar,
+    /// Each node against the nearest point of the other surface, which is smoothed.
+    NodeToSurface,
+}
+
 impl Contact {
     /// A node against an obstacle with Coulomb's coefficient of friction (dimensionless, 0 or more).
     pub fn new(node: impl Into<String>, obstacle: impl Into<String>, friction: f64) -> Self {
-        Self { node: node.into(), surface: None, obstacle: obstacle.into(), friction }
+        Self {
+            node: node.into(),
+            surface: None,
+            obstacle: obstacle.into(),
+            against: None,
+            discretisation: None,
+            friction,
+        }
+    }
+
+    /// The nodes of a surface against another surface with Coulomb's coefficient of friction (dimensionless, 0 or more).
+    /// The names stand for nodes once the request is [`expanded`](crate::expanded).
+    pub fn between(surface: impl Into<String>, against: impl Into<String>, friction: f64) -> Self {
+        let (surface, against) = (Some(surface.into()), Some(against.into()));
+        Self { surface, against, ..Self::new(String::new(), String::new(), friction) }
+    }
+
+    /// Whether the contact stands for those of all nodes of its surface.
+    pub fn names_whole_surface(&self) -> bool {
+        self.surface.is_some() && self.node.is_empty()
+    }
+
+    /// The name of what is touched: the obstacle or the other surface.
+    pub fn counterpart(&self) -> &str {
+        self.against.as_deref().unwrap_or(&self.obstacle)
     }
 }

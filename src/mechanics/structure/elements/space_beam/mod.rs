@@ -13,7 +13,6 @@
 //! Axis 1 of the cross-section is the part across the beam of a given vector (of three nodes: across the tangent at the
 //! second, and carried along the beam without twist); axis 2 is a quarter turn about the beam's direction from it.
 
-mod differential;
 pub mod segment;
 #[cfg(test)]
 mod tests;

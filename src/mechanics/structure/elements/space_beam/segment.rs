@@ -23,7 +23,7 @@
 //! twos: the ends of a segment may turn against each other by any angle below a full turn.
 
 use crate::mechanics::rotation::{polynomial, quaternion, sine_coefficient, sine_of_root};
-use crate::mechanics::structure::elements::space_beam::differential::{
+use crate::algebra::differential::{
     Differential, DifferentialQuaternion, WithGradient, WithHessian, added, cross, dot, scaled,
 };
 use nalgebra::{Matrix3, Quaternion, Vector3};

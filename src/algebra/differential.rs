@@ -4,7 +4,7 @@
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A number, with or without derivatives.
-pub(super) trait Differential:
+pub(crate) trait Differential:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
 {
     fn constant(value: f64) -> Self;
@@ -45,14 +45,14 @@ impl Differential for f64 {
 
 /// A number with its gradient.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct WithGradient<const N: usize> {
+pub(crate) struct WithGradient<const N: usize> {
     pub value: f64,
     pub gradient: [f64; N],
 }
 
 /// A number with its gradient and its Hessian.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct WithHessian<const N: usize> {
+pub(crate) struct WithHessian<const N: usize> {
     pub value: f64,
     pub gradient: [f64; N],
     pub hessian: [[f64; N]; N],
@@ -179,28 +179,28 @@ sums!(WithGradient,);
 sums!(WithHessian, &);
 
 /// `a · b`
-pub(super) fn dot<D: Differential>(a: &[D; 3], b: &[D; 3]) -> D {
+pub(crate) fn dot<D: Differential>(a: &[D; 3], b: &[D; 3]) -> D {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// `a × b`
-pub(super) fn cross<D: Differential>(a: &[D; 3], b: &[D; 3]) -> [D; 3] {
+pub(crate) fn cross<D: Differential>(a: &[D; 3], b: &[D; 3]) -> [D; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// `f a`
-pub(super) fn scaled<D: Differential>(factor: D, a: &[D; 3]) -> [D; 3] {
+pub(crate) fn scaled<D: Differential>(factor: D, a: &[D; 3]) -> [D; 3] {
     a.map(|part| factor * part)
 }
 
 /// `a + b`
-pub(super) fn added<D: Differential>(a: &[D; 3], b: &[D; 3]) -> [D; 3] {
+pub(crate) fn added<D: Differential>(a: &[D; 3], b: &[D; 3]) -> [D; 3] {
     std::array::from_fn(|k| a[k] + b[k])
 }
 
 /// A quaternion: the real part, then the vector.
 #[derive(Clone, Copy)]
-pub(super) struct DifferentialQuaternion<D>(pub D, pub [D; 3]);
+pub(crate) struct DifferentialQuaternion<D>(pub D, pub [D; 3]);
 
 impl<D: Differential> DifferentialQuaternion<D> {
     pub fn constant(real: f64, vector: [f64; 3]) -> Self {

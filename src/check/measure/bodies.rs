@@ -1,0 +1,527 @@
+//! Contacts between bodies as posted, in terms of their own: the mean gap at a node by Gauss's quadrature between the
+//! projected nodes and the mass matrix of the covered part, the nearest point of a smoothed surface by sampling and
+//! bisection; derivatives by dual numbers, one degree of freedom at a time.
+
+use crate::check::measure::dual_number::DualNumber;
+use crate::check::measure::obstacles::MeasuredFrame;
+use crate::check::measure::vector::{MeasuredVector, largest, padded};
+use crate::model::request::{Contact, ContactDiscretisation, Element, Model};
+use std::collections::HashMap;
+
+/// Parts of a face that are covered over less than this part of its length count as not covered.
+const COVERED: f64 = 1e-8;
+/// Samples on each face when a nearest point is sought, and bisections from the best of them.
+const SAMPLES: usize = 16;
+const BISECTIONS: usize = 60;
+
+/// Positions and weights of Gauss's three points on (0, 1).
+const GAUSS: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+
+type Number = DualNumber<1>;
+type Point = [Number; 2];
+
+/// A contact of a node with a surface.
+#[derive(Debug, Clone)]
+pub(super) struct MeasuredBody {
+    /// Faces at the node, each in its order; none where the node itself touches.
+    faces: Vec<[usize; 2]>,
+    node: usize,
+    /// Faces of the opposite surface in order, with their coordinates along it and the length of a closed chain.
+    opposite: Vec<OppositeFace>,
+    /// Undeformed places of the nodes that matter.
+    places: HashMap<usize, MeasuredVector>,
+    /// Gap at the start, where it is negative: the meshes overlap, and the contact is closed.
+    overlap: f64,
+    reach: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct OppositeFace {
+    nodes: [usize; 2],
+    along: [f64; 2],
+    /// Faces before and after, as indices.
+    beside: [Option<usize>; 2],
+    period: Option<f64>,
+}
+
+/// The contact at a state.
+#[derive(Debug, Clone)]
+pub(super) struct BodyState {
+    pub gap: f64,
+    /// Position along the opposite surface, its stretch, and the length of a closed surface.
+    place: f64,
+    stretch: f64,
+    period: Option<f64>,
+    /// For each node that the contact acts on, the forces on it per unit of normal and of tangential reaction, and whether
+    /// it belongs to the node's own surface.
+    pub rows: Vec<(usize, [MeasuredVector; 2], bool)>,
+}
+
+/// What of the opposite surface is in front of a node.
+struct Found {
+    /// The faces, as indices; the one with the nearest point of a smoothed surface.
+    faces: Vec<usize>,
+    /// Parameter of the nearest point, and slope there of the product that vanishes.
+    place: f64,
+    slope: f64,
+}
+
+/// Gap, position along the opposite surface, stretch.
+struct Values {
+    gap: Number,
+    place: Number,
+    stretch: Number,
+    period: Option<f64>,
+}
+
+/// The faces of a surface with their free side on the left, by numbers of nodes.
+fn lines(model: &Model, name: &str) -> Vec<[usize; 2]> {
+    let number = |name: &String| model.nodes.get_index_of(name);
+    let surface = model.surfaces.get(name);
+    let faces = surface.into_iter().flat_map(|surface| &surface.faces);
+    let oriented = |face: &Vec<String>| {
+        let [first, last] = face.as_slice() else { return None };
+        let solid = model.elements.iter().filter_map(Element::solid).map(|(_, solid)| &solid.nodes);
+        // A solid has its corners counter-clockwise: seen along its boundary, the free side is on the right.
+        let follows = |nodes: &Vec<String>, one: &String, other: &String| {
+            let at = nodes.iter().position(|node| node == one);
+            at.is_some_and(|at| nodes[(at + 1) % nodes.len()] == *other)
+        };
+        let turn = solid.into_iter().find_map(|nodes| {
+            if follows(nodes, first, last) {
+                Some(true)
+            } else {
+                follows(nodes, last, first).then_some(false)
+            }
+        });
+        let [first, last] = [number(first)?, number(last)?];
+        Some(if turn == Some(true) { [last, first] } else { [first, last] })
+    };
+    faces.filter_map(oriented).collect()
+}
+
+fn distance(model: &Model, nodes: [usize; 2]) -> f64 {
+    let [first, last] = nodes.map(|node| model.nodes.get_index(node).map_or(MeasuredVector::zeros(), |(_, at)| padded(at)));
+    (last - first).norm()
+}
+
+/// The faces of the opposite surface, with what lies beside them and the coordinates along them.
+fn opposite(model: &Model, lines: &[[usize; 2]]) -> Vec<OppositeFace> {
+    let ending: HashMap<usize, usize> = lines.iter().enumerate().map(|(index, line)| (line[1], index)).collect();
+    let beginning: HashMap<usize, usize> = lines.iter().enumerate().map(|(index, line)| (line[0], index)).collect();
+    let mut along = vec![None; lines.len()];
+    let mut periods = vec![None; lines.len()];
+    for start in 0..lines.len() {
+        if along[start].is_some() {
+            continue;
+        }
+        let mut first = start;
+        while let Some(before) = ending.get(&lines[first][0]).filter(|before| **before != start) {
+            first = *before;
+        }
+        let (mut face, mut from, mut chain) = (first, 0.0, Vec::new());
+        let closed = loop {
+            let to = from + distance(model, lines[face]);
+            along[face] = Some([from, to]);
+            chain.push(face);
+            from = to;
+            match beginning.get(&lines[face][1]) {
+                Some(next) if *next == first => break true,
+                Some(next) => face = *next,
+                None => break false,
+            }
+        };
+        chain.into_iter().filter(|_| closed).for_each(|face| periods[face] = Some(from));
+    }
+    let beside = |line: &[usize; 2]| [ending.get(&line[0]).copied(), beginning.get(&line[1]).copied()];
+    let all = lines.iter().zip(along).zip(periods);
+    all.map(|((nodes, along), period)| OppositeFace {
+        nodes: *nodes,
+        along: along.unwrap_or_default(),
+        beside: beside(nodes),
+        period,
+    })
+    .collect()
+}
+
+/// A coordinate moved by whole turns to near another one.
+fn near(period: Option<f64>, from: f64, to: f64) -> f64 {
+    period.map_or(to, |period| to - period * ((to - from) / period).round())
+}
+
+impl MeasuredBody {
+    /// The contact of a checked model; `None` where it is none of bodies.
+    pub fn new(model: &Model, contact: &Contact) -> Option<Self> {
+        let against = contact.against.as_deref()?;
+        let node = model.nodes.get_index_of(&contact.node)?;
+        let faces = match (contact.discretisation.unwrap_or_default(), contact.surface.as_deref()) {
+            (ContactDiscretisation::Mortar, Some(surface)) => {
+                lines(model, surface).into_iter().filter(|line| line.contains(&node)).collect()
+            }
+            _ => Vec::new(),
+        };
+        let opposite = opposite(model, &lines(model, against));
+        let numbers = faces.iter().flatten().chain(opposite.iter().flat_map(|face| &face.nodes));
+        let places: HashMap<usize, MeasuredVector> = numbers
+            .chain([&node])
+            .filter_map(|node| Some((*node, padded(model.nodes.get_index(*node)?.1))))
+            .collect();
+        let reach = places.values().map(largest).fold(0.0, f64::max);
+        let mut body = Self { faces, node, opposite, places, overlap: 0.0, reach };
+        let undeformed = |node: usize| [0, 1].map(|k| Number::constant(body.place(node)[k]));
+        body.overlap = body.values(&body.found(&undeformed), &undeformed).gap.0.min(0.0);
+        Some(body)
+    }
+
+    fn place(&self, node: usize) -> MeasuredVector {
+        self.places.get(&node).copied().unwrap_or_else(MeasuredVector::zeros)
+    }
+
+    /// The contact at displacements.
+    pub fn state(&self, displacements: &[MeasuredVector]) -> BodyState {
+        let position = |node: usize| self.place(node) + displacements[node];
+        let still = |node: usize| [0, 1].map(|k| Number::constant(position(node)[k]));
+        let found = self.found(&still);
+        let at_rest = self.values(&found, &still);
+        let own: Vec<usize> = self.faces.iter().flatten().copied().chain([self.node]).collect();
+        let opposite = found.faces.iter().flat_map(|face| self.nodes_of(*face));
+        let mut nodes: Vec<usize> = own.iter().copied().chain(opposite).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let mut rows = Vec::new();
+        for node in nodes {
+            let mut row = [MeasuredVector::zeros(); 2];
+            for component in 0..2 {
+                let values = self.values(&found, &|other| {
+                    let mut point = still(other);
+                    if other == node {
+                        point[component] = Number::variable(point[component].0, 0);
+                    }
+                    point
+                });
+                row[0][component] = values.gap.1[0];
+                row[1][component] = at_rest.stretch.0 * values.place.1[0];
+            }
+            if row.iter().any(|part| *part != MeasuredVector::zeros()) {
+                rows.push((node, row, own.contains(&node)));
+            }
+        }
+        let Values { gap, place, stretch, period } = at_rest;
+        BodyState { gap: gap.0 - self.overlap, place: place.0, stretch: stretch.0, period, rows }
+    }
+
+    /// The gap at displacements.
+    pub fn gap(&self, displacements: &[MeasuredVector]) -> f64 {
+        let still = |node: usize| [0, 1].map(|k| Number::constant((self.place(node) + displacements[node])[k]));
+        self.values(&self.found(&still), &still).gap.0 - self.overlap
+    }
+
+    /// The nodes that the shape of an opposite face depends on.
+    fn nodes_of(&self, face: usize) -> Vec<usize> {
+        let face = &self.opposite[face];
+        let beside = face.beside.into_iter().flatten().filter(|_| self.faces.is_empty());
+        beside.flat_map(|beside| self.opposite[beside].nodes).chain(face.nodes).collect()
+    }
+
+    /// A frame with the axes of the opposite surface: its tangent first, its normal second.
+    pub fn frame(&self, gap: f64, displacements: &[MeasuredVector]) -> MeasuredFrame {
+        let reach = self.places.keys().map(|node| largest(&displacements[*node])).fold(self.reach, f64::max);
+        MeasuredFrame {
+            gap,
+            rounding: 64.0 * f64::EPSILON * reach,
+            normal: MeasuredVector::y(),
+            tangents: [MeasuredVector::x(), MeasuredVector::zeros()],
+        }
+    }
+
+    /// What of the opposite surface is in front of the node.
+    fn found(&self, point: &dyn Fn(usize) -> Point) -> Found {
+        if self.faces.is_empty() {
+            return self.nearest(point);
+        }
+        let covers = |face: &OppositeFace| {
+            self.faces.iter().any(|[first, last]| {
+                let (start, edge) = (point(*first), minus(point(*last), point(*first)));
+                let square = product(edge, edge).0;
+                let [high, low] = face.nodes.map(|node| product(minus(point(node), start), edge).0 / square);
+                low < high && high.min(1.0) - low.max(0.0) > COVERED
+            })
+        };
+        let faces = (0..self.opposite.len()).filter(|face| covers(&self.opposite[*face])).collect();
+        Found { faces, place: 0.0, slope: 1.0 }
+    }
+
+    fn values(&self, found: &Found, point: &dyn Fn(usize) -> Point) -> Values {
+        if self.faces.is_empty() { self.at_nearest(found, point) } else { self.mean(found, point) }
+    }
+
+    /// The smallest distance between the faces and the opposite surface.
+    pub fn distance(&self, displacements: &[MeasuredVector]) -> f64 {
+        let position = |node: usize| self.place(node) + displacements[node];
+        if self.faces.is_empty() {
+            return self.gap(displacements);
+        }
+        let from_line = |point: MeasuredVector, [first, last]: [usize; 2]| {
+            let (first, edge) = (position(first), position(last) - position(first));
+            let share = ((point - first).dot(&edge) / edge.norm_squared()).clamp(0.0, 1.0);
+            (point - first - edge * share).norm()
+        };
+        let mut least = f64::INFINITY;
+        for own in &self.faces {
+            for other in &self.opposite {
+                least = own.iter().fold(least, |least, node| least.min(from_line(position(*node), other.nodes)));
+                least = other.nodes.iter().fold(least, |least, node| least.min(from_line(position(*node), *own)));
+            }
+        }
+        least
+    }
+
+    /// The mean over the faces at the node.
+    fn mean(&self, found: &Found, point: &dyn Fn(usize) -> Point) -> Values {
+        let zero = Number::constant(0.0);
+        let [mut weights, mut gaps, mut places, mut lengths, mut undeformed] = [zero; 5];
+        let mut reference: Option<f64> = None;
+        let mut period = None;
+        for [first, last] in &self.faces {
+            let (start, end) = (point(*first), point(*last));
+            let edge = minus(end, start);
+            let length = root(product(edge, edge));
+            let along = edge.map(|part| part.over(length));
+            let across = [along[1].times(-1.0), along[0]];
+            // Sums over the covered part: of the shape functions, of their products, of their products with the distance
+            // and with the position.
+            let (mut shares, mut mass, mut heights, mut positions) = ([zero; 2], [zero; 3], [zero; 2], [zero; 2]);
+            for face in found.faces.iter().map(|face| &self.opposite[*face]) {
+                let ends = face.nodes.map(|node| minus(point(node), start));
+                let [high, low] = ends.map(|end| product(end, along));
+                let [height_high, height_low] = ends.map(|end| product(end, across));
+                let (from, to) = (larger(low, zero), smaller(high, length));
+                if high.0 <= low.0 || to.0 - from.0 <= COVERED * length.0 {
+                    continue;
+                }
+                let origin = *reference.get_or_insert(face.along[0]);
+                period = face.period;
+                let shift = near(face.period, origin, face.along[0]) - face.along[0];
+                let width = to.minus(from);
+                for (fraction, weight) in GAUSS {
+                    let s = from.plus(width.times(fraction));
+                    let share = s.minus(low).over(high.minus(low));
+                    let height = height_low.plus(share.by(height_high.minus(height_low)));
+                    let position = share.times(face.along[0] - face.along[1]).plus(Number::constant(face.along[1] + shift));
+                    let shape = [Number::constant(1.0).minus(s.over(length)), s.over(length)];
+                    let weight = width.times(weight);
+                    for k in 0..2 {
+                        shares[k] = shares[k].plus(weight.by(shape[k]));
+                        mass[2 * k] = mass[2 * k].plus(weight.by(shape[k]).by(shape[k]));
+                        heights[k] = heights[k].plus(weight.by(shape[k]).by(height));
+                        positions[k] = positions[k].plus(weight.by(shape[k]).by(position));
+                    }
+                    mass[1] = mass[1].plus(weight.by(shape[0]).by(shape[1]));
+                }
+                lengths = lengths.plus(width);
+                let reference_length = Number::constant(face.along[1] - face.along[0]);
+                undeformed = undeformed.plus(width.by(reference_length).over(high.minus(low)));
+            }
+            if shares[0].0 + shares[1].0 <= 0.0 {
+                continue;
+            }
+            let own = usize::from(*last == self.node);
+            let determinant = mass[0].by(mass[2]).minus(mass[1].by(mass[1]));
+            let fitted = |sums: [Number; 2]| {
+                let [one, other] = [sums[own], sums[1 - own]];
+                one.by(mass[2 - 2 * own]).minus(other.by(mass[1])).over(determinant)
+            };
+            weights = weights.plus(shares[own]);
+            gaps = gaps.plus(shares[own].by(fitted(heights)));
+            places = places.plus(shares[own].by(fitted(positions)));
+        }
+        if weights.0 == 0.0 {
+            let apart = self.apart(point);
+            return Values { gap: apart, place: zero, stretch: Number::constant(1.0), period: None };
+        }
+        Values { gap: gaps.over(weights), place: places.over(weights), stretch: lengths.over(undeformed), period }
+    }
+
+    /// The distance where nothing is opposite; without derivatives, as nothing acts.
+    fn apart(&self, point: &dyn Fn(usize) -> Point) -> Number {
+        let mut moved = HashMap::new();
+        for node in self.places.keys() {
+            let at = point(*node);
+            moved.insert(*node, MeasuredVector::new(at[0].0, at[1].0, 0.0) - self.place(*node));
+        }
+        let most = moved.keys().copied().max().unwrap_or(0);
+        let mut displacements = vec![MeasuredVector::zeros(); most + 1];
+        moved.into_iter().for_each(|(node, motion)| displacements[node] = motion);
+        Number::constant(self.distance(&displacements))
+    }
+
+    /// Control points of the smoothed surface at a face, and their coordinates along it.
+    fn controls(&self, face: &OppositeFace, point: &dyn Fn(usize) -> Point) -> ([Point; 4], [f64; 4]) {
+        let [first, last] = face.nodes.map(point);
+        let length = |beside: Option<usize>| {
+            let along = beside.map_or(face.along, |beside| self.opposite[beside].along);
+            along[1] - along[0]
+        };
+        let beyond = |near: Point, far: Point| [0, 1].map(|k| near[k].times(2.0).minus(far[k]));
+        let before = face.beside[0].map_or_else(|| beyond(first, last), |beside| point(self.opposite[beside].nodes[0]));
+        let after = face.beside[1].map_or_else(|| beyond(last, first), |beside| point(self.opposite[beside].nodes[1]));
+        let [from, to] = face.along;
+        ([before, first, last, after], [from - length(face.beside[0]), from, to, to + length(face.beside[1])])
+    }
+
+    /// The way from a point of the smoothed surface to the node, the tangent there, the coordinate along the surface and
+    /// its slope.
+    fn curve(&self, face: usize, t: Number, point: &dyn Fn(usize) -> Point) -> (Point, Point, Number, Number) {
+        let face = &self.opposite[face];
+        let (controls, along) = self.controls(face, point);
+        let [values, slopes] = weights(t, face.beside.map(|beside| beside.is_none()));
+        let sum = |weights: &[Number; 4]| {
+            [0, 1].map(|k| {
+                let terms = weights.iter().zip(&controls).map(|(weight, control)| weight.by(control[k]));
+                terms.fold(Number::constant(0.0), Number::plus)
+            })
+        };
+        let scalar = |weights: &[Number; 4]| {
+            let terms = weights.iter().zip(along).map(|(weight, place)| weight.times(place));
+            terms.fold(Number::constant(0.0), Number::plus)
+        };
+        (minus(point(self.node), sum(&values)), sum(&slopes), scalar(&values), scalar(&slopes))
+    }
+
+    /// The nearest point of the smoothed surface.
+    fn nearest(&self, point: &dyn Fn(usize) -> Point) -> Found {
+        let mut best = (f64::INFINITY, 0, 0.0);
+        for index in 0..self.opposite.len() {
+            for sample in 0..=SAMPLES {
+                let t = sample as f64 / SAMPLES as f64;
+                let (from, ..) = self.curve(index, Number::constant(t), point);
+                let distance = product(from, from).0;
+                if distance < best.0 {
+                    best = (distance, index, t);
+                }
+            }
+        }
+        let (_, mut index, t) = best;
+        let part = 1.0 / SAMPLES as f64;
+        let forward = |index: usize, t: f64| {
+            let (from, slope, ..) = self.curve(index, Number::constant(t), point);
+            product(from, slope).0
+        };
+        let (mut low, mut high) = (t - part, t + part);
+        // The neighbouring face takes over past an end, unless the surface ends there and goes on straight.
+        if forward(index, t) < 0.0 {
+            high = t;
+            if low < 0.0 {
+                match self.opposite[index].beside[0] {
+                    Some(before) => (index, low, high) = (before, low + 1.0, 1.0),
+                    None => low = -1.0,
+                }
+            }
+        } else {
+            low = t;
+            if high > 1.0 {
+                match self.opposite[index].beside[1] {
+                    Some(after) => (index, low, high) = (after, 0.0, high - 1.0),
+                    None => high = 2.0,
+                }
+            }
+        }
+        while low < 0.0 && forward(index, low) < 0.0 && low > -1e9 {
+            low *= 2.0;
+        }
+        while high > 1.0 && forward(index, high) > 0.0 && high < 1e9 {
+            high *= 2.0;
+        }
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (low + high);
+            if forward(index, middle) > 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let t = 0.5 * (low + high);
+        // Secant slope of the product, for one step of Newton's method with derivatives.
+        let step = 1e-4;
+        let slope = (forward(index, t + step) - forward(index, t - step)) / (2.0 * step);
+        Found { faces: vec![index], place: t, slope }
+    }
+
+    fn at_nearest(&self, found: &Found, point: &dyn Fn(usize) -> Point) -> Values {
+        let (Some(face), Found { place: t, slope, .. }) = (found.faces.first().copied(), found) else {
+            return Values {
+                gap: Number::constant(f64::NAN),
+                place: Number::constant(0.0),
+                stretch: Number::constant(1.0),
+                period: None,
+            };
+        };
+        let (from, tangent, ..) = self.curve(face, Number::constant(*t), point);
+        let place = Number::constant(*t).minus(product(from, tangent).times(1.0 / slope));
+        let (from, tangent, position, advance) = self.curve(face, DualNumber(*t, place.1), point);
+        let size = root(product(tangent, tangent));
+        let gap = from[1].by(tangent[0]).minus(from[0].by(tangent[1])).over(size);
+        Values { gap, place: position, stretch: size.over(advance), period: self.opposite[face].period }
+    }
+}
+
+impl BodyState {
+    /// The motion since another state, in the axes of the opposite surface.
+    pub fn motion_since(&self, before: &Self) -> MeasuredVector {
+        let way = near(self.period, before.place, self.place) - before.place;
+        MeasuredVector::new(0.5 * (self.stretch + before.stretch) * way, self.gap - before.gap, 0.0)
+    }
+
+    /// The forces on the nodes, and their sum over the node's own surface.
+    pub fn forces(&self, normal: f64, tangential: f64) -> (Vec<(usize, MeasuredVector)>, MeasuredVector) {
+        let force = |row: &[MeasuredVector; 2]| row[0] * normal + row[1] * tangential;
+        let all = self.rows.iter().map(|(node, row, _)| (*node, force(row))).collect();
+        let own = self.rows.iter().filter(|(_, _, own)| *own).map(|(_, row, _)| force(row)).sum();
+        (all, own)
+    }
+}
+
+/// Values and slopes of the cubic B-spline's functions on a face; beyond an end of the surface those of a straight line.
+fn weights(t: Number, ends: [bool; 2]) -> [[Number; 4]; 2] {
+    let bounded = if ends[0] && t.0 < 0.0 {
+        Number::constant(0.0)
+    } else if ends[1] && t.0 > 1.0 {
+        Number::constant(1.0)
+    } else {
+        t
+    };
+    let one = Number::constant(1.0);
+    let rest = one.minus(bounded);
+    let cube = |a: Number| a.by(a).by(a).times(1.0 / 6.0);
+    let square = |a: Number| a.by(a).times(0.5);
+    // The inner functions by what is left of one, so that all four sum to one.
+    let second = |a: Number| Number::constant(2.0 / 3.0).minus(a.by(a)).plus(a.by(a).by(a).times(0.5));
+    let values = [cube(rest), second(bounded), second(rest), cube(bounded)];
+    let second_slope = |a: Number| a.times(-2.0).plus(a.by(a).times(1.5));
+    let slopes =
+        [square(rest).times(-1.0), second_slope(bounded), second_slope(rest).times(-1.0), square(bounded)];
+    let beyond = t.minus(bounded);
+    [std::array::from_fn(|k| values[k].plus(beyond.by(slopes[k]))), slopes]
+}
+
+fn minus(a: Point, b: Point) -> Point {
+    [a[0].minus(b[0]), a[1].minus(b[1])]
+}
+
+fn product(a: Point, b: Point) -> Number {
+    a[0].by(b[0]).plus(a[1].by(b[1]))
+}
+
+fn root(a: Number) -> Number {
+    let root = a.0.sqrt();
+    a.map(root, 0.5 / root)
+}
+
+fn larger(a: Number, b: Number) -> Number {
+    if a.0 > b.0 { a } else { b }
+}
+
+fn smaller(a: Number, b: Number) -> Number {
+    if a.0 < b.0 { a } else { b }
+}

@@ -1,0 +1,110 @@
+//! A face in its present position with the pieces of the opposite surface that cover it, and the derivatives of what they
+//! give by the positions of the nodes.
+
+use crate::algebra::differential::WithGradient;
+use crate::mechanics::contact::bodies::face_moments::{FaceAtNode, MOMENTS, NodalValues, OF_FACE, moments, nodal_values};
+use crate::mechanics::contact::bodies::{PlaneVector, turned_left};
+use smallvec::SmallVec;
+
+/// A piece of the opposite surface in the frame of a face.
+pub(super) struct Piece {
+    /// Its nodes, by their indices among the contact's.
+    pub(super) nodes: [usize; 2],
+    /// Length of the face, then `s` and `h` of both nodes.
+    pub(super) values: [f64; 5],
+    pub(super) along: [f64; 2],
+}
+
+/// A face in its present position, with what covers it.
+pub(super) struct Covered {
+    /// Its nodes, by their indices among the contact's.
+    pub(super) nodes: [usize; 2],
+    pub(super) at: FaceAtNode,
+    pub(super) length: f64,
+    pub(super) along: PlaneVector,
+    pub(super) pieces: SmallVec<[Piece; 4]>,
+}
+
+/// All variables of up to two faces.
+pub(super) const VARIABLES: usize = 2 * OF_FACE;
+
+/// Calls `each` with every variable that the values at the node depend on through the gradient `weights` (of all
+/// variables of the covered faces).
+pub(super) fn each_gradient(covered: &[Covered], weights: &[f64; VARIABLES], mut each: impl FnMut(usize, PlaneVector)) {
+    for (face, weights) in covered.iter().zip(weights.chunks_exact(OF_FACE)) {
+        let by_length = weights[MOMENTS];
+        let [first, last] = face.nodes;
+        each(first, face.along.map(|part| -by_length * part));
+        each(last, face.along.map(|part| by_length * part));
+        for piece in &face.pieces {
+            let variables = std::array::from_fn(|k| WithGradient::<5>::variable(piece.values[k], k));
+            let moments = moments(&variables, piece.along, face.at.from);
+            let mut slopes = [0.0; 5];
+            for (moment, weight) in moments.iter().zip(weights) {
+                slopes.iter_mut().zip(&moment.gradient).for_each(|(sum, part)| *sum += weight * part);
+            }
+            face.each_coordinate(piece, &slopes, &mut each);
+        }
+    }
+}
+
+impl Covered {
+    pub(super) fn moments(&self) -> [f64; OF_FACE] {
+        let mut sums = [0.0; OF_FACE];
+        for piece in &self.pieces {
+            let own = moments(&piece.values, piece.along, self.at.from);
+            sums.iter_mut().zip(own).for_each(|(sum, part)| *sum += part);
+        }
+        sums[MOMENTS] = self.length;
+        sums
+    }
+
+    /// Calls `each` with the gradient by the positions of nodes of a function of the piece's values with these slopes:
+    ///
+    /// ```text
+    /// ds = t·(dx - dx₁) + h/L n·(dx₂ - dx₁),   dh = n·(dx - dx₁) - s/L n·(dx₂ - dx₁),   dL = t·(dx₂ - dx₁)
+    /// ```
+    pub(super) fn each_coordinate(&self, piece: &Piece, slopes: &[f64; 5], each: &mut impl FnMut(usize, PlaneVector)) {
+        let (along, normal) = (self.along, turned_left(self.along));
+        let combined = |a: f64, b: f64| [a * along[0] + b * normal[0], a * along[1] + b * normal[1]];
+        let mut turning = 0.0;
+        let (mut sum_s, mut sum_h) = (0.0, 0.0);
+        for (end, node) in piece.nodes.into_iter().enumerate() {
+            let ([s, h], [by_s, by_h]) =
+                ([1, 2].map(|k| piece.values[k + 2 * end]), [1, 2].map(|k| slopes[k + 2 * end]));
+            each(node, combined(by_s, by_h));
+            turning += (by_s * h - by_h * s) / self.length;
+            (sum_s, sum_h) = (sum_s + by_s, sum_h + by_h);
+        }
+        each(self.nodes[0], combined(-sum_s - slopes[0], -sum_h - turning));
+        each(self.nodes[1], combined(slopes[0], turning));
+    }
+}
+
+/// Local numbers of degrees of freedom, in the order in which they are met.
+#[derive(Default)]
+pub(super) struct Met {
+    pub(super) nodes: SmallVec<[usize; 12]>,
+}
+
+impl Met {
+    pub(super) fn place(&mut self, node: usize) -> usize {
+        self.nodes.iter().position(|met| *met == node).unwrap_or_else(|| {
+            self.nodes.push(node);
+            self.nodes.len() - 1
+        })
+    }
+}
+
+/// The gradients of gap, place and stretch by the variables of the faces.
+pub(super) fn nodal_gradients(covered: &[Covered]) -> [WithGradient<VARIABLES>; 3] {
+    let faces: SmallVec<[_; 2]> = (covered.iter().enumerate())
+        .map(|(which, face)| {
+            let values = face.moments();
+            let variable = |k: usize| WithGradient::variable(values[k], which * OF_FACE + k);
+            (face.at, std::array::from_fn(variable))
+        })
+        .collect();
+    let NodalValues { gap, place, stretch } = nodal_values(&faces);
+    [gap, place, stretch]
+}

@@ -1,0 +1,93 @@
+//! Integrals over the part of a face that an opposite surface covers.
+//!
+//! In the frame of the face, `s` along it and `h` towards its free side, the opposite surface is the graph `h(s)` of
+//! straight pieces. All integrals are closed forms of the coordinates of the nodes, over every piece
+//!
+//! ```text
+//! W_k = ∫ s^k ds  (k = 0, 1, 2),    F_k = ∫ h s^k ds,    S_k = ∫ S s^k ds  (k = 0, 1),    Λ = ∫ |dS/ds| ds
+//! ```
+//!
+//! They are twice differentiable in the coordinates as long as no node passes the end of the face, and once at that.
+
+use crate::algebra::differential::Differential;
+
+/// Number of integrals of a face; the length of the face follows them among the variables of [`nodal_values`].
+pub(super) const MOMENTS: usize = 8;
+
+/// The variables of a face: its moments and its length.
+pub(super) const OF_FACE: usize = MOMENTS + 1;
+
+/// The moments of one piece. `piece`: the length of the face, then `s` and `h` of the first node of the opposite face
+/// and `s` and `h` of its last one; `along`: its coordinates along the opposite surface; `from`: the position on the face
+/// from which `s` is counted in the moments.
+pub(super) fn moments<D: Differential>(piece: &[D; 5], along: [f64; 2], from: f64) -> [D; MOMENTS] {
+    let [length, first, first_height, last, last_height] = *piece;
+    // The opposite surface runs the other way: its last node is on the side of smaller s.
+    let low = if last.value() > 0.0 { last } else { D::constant(0.0) };
+    let high = if first.value() < length.value() { first } else { length };
+    let width = high - low;
+    let middle = (high + low).times(0.5);
+    let inverse = (first - last).reciprocal();
+    let rise = (first_height - last_height) * inverse;
+    let height = last_height + rise * (middle - last);
+    let advance = inverse.times(along[0] - along[1]);
+    let place = (advance * (middle - last)).plus(along[1]);
+    let middle = middle.plus(-from);
+    let spread = width * width.times(1.0 / 12.0);
+    [
+        width,
+        width * middle,
+        width * (middle * middle + spread),
+        width * height,
+        width * (height * middle + rise * spread),
+        width * place,
+        width * (place * middle + advance * spread),
+        (width * inverse).times(along[1] - along[0]),
+    ]
+}
+
+/// What the faces at a node give at the node.
+pub(super) struct NodalValues<D> {
+    pub gap: D,
+    /// Position along the opposite surface.
+    pub place: D,
+    /// Ratio of the deformed to the undeformed length of the opposite surface.
+    pub stretch: D,
+}
+
+/// A face at a node.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FaceAtNode {
+    /// Whether the node is the last of the face, not the first.
+    pub is_last: bool,
+    /// The position from which `s` is counted in the moments.
+    pub from: f64,
+}
+
+/// The values at a node: means over its faces, weighted by dual functions, which are linear on each face and orthogonal to
+/// the shape functions of its other nodes over the covered part (B. I. Wohlmuth, A mortar finite element method using dual
+/// spaces for the Lagrange multiplier, SIAM J. Numer. Anal. 38, 2000). The mean of `h` is the value at the node of the line
+/// that fits `h` best; the weight of a face is the integral of the node's shape function.
+pub(super) fn nodal_values<D: Differential>(faces: &[(FaceAtNode, [D; OF_FACE])]) -> NodalValues<D> {
+    let mut sums = [D::constant(0.0); 5];
+    for (at, [area, first, second, heights, heights_first, places, places_first, undeformed, length]) in faces {
+        let inverse = area.reciprocal();
+        let centre = *first * inverse;
+        let spread = *second * inverse - centre * centre;
+        // The node's position and shape function, from where s is counted.
+        let own = if at.is_last { *length } else { D::constant(0.0) }.plus(-at.from);
+        let last_share = (area.times(at.from) + *first) * length.reciprocal();
+        let weight = if at.is_last { last_share } else { *area - last_share };
+        let lever = (own - centre) * spread.reciprocal();
+        let fitted = |mean: D, first: D| {
+            let mean = mean * inverse;
+            mean + (first * inverse - centre * mean) * lever
+        };
+        let parts =
+            [weight, weight * fitted(*heights, *heights_first), weight * fitted(*places, *places_first), *area, *undeformed];
+        sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum = *sum + part);
+    }
+    let [weight, gap, place, area, undeformed] = sums;
+    let inverse = weight.reciprocal();
+    NodalValues { gap: gap * inverse, place: place * inverse, stretch: area * undeformed.reciprocal() }
+}

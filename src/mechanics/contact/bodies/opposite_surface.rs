@@ -1,0 +1,140 @@
+//! The surface that a node of another body is in front of, in the plane.
+
+use crate::mechanics::contact::bodies::{PlaneVector, difference, product};
+use std::collections::HashMap;
+
+/// A surface of straight faces, free to the left of the order of their nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OppositeSurface {
+    /// Numbers of the nodes, each once.
+    pub nodes: Vec<usize>,
+    /// Undeformed positions of the nodes.
+    pub places: Vec<PlaneVector>,
+    /// The faces, chain by chain, each with its two nodes as indices into `nodes`.
+    pub faces: Vec<SurfaceFace>,
+    /// The chains of faces, one after the other.
+    pub chains: Vec<Chain>,
+}
+
+/// A straight face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceFace {
+    pub nodes: [usize; 2],
+    /// Coordinates of the nodes along the undeformed chain.
+    pub along: [f64; 2],
+    /// Index of the chain.
+    pub chain: usize,
+}
+
+/// Faces that follow one another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Chain {
+    /// Index of the first face.
+    pub first: usize,
+    /// Number of faces.
+    pub count: usize,
+    /// Length of the undeformed chain, if its end is its beginning.
+    pub period: Option<f64>,
+}
+
+/// Why faces make no surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum SurfaceError {
+    /// Index of the node, by number of the structure.
+    #[error("more than one face begins, or ends, at a node")]
+    Branches(usize),
+}
+
+impl OppositeSurface {
+    /// The surface of faces, each given by the numbers of its two nodes in order; `place` gives undeformed positions.
+    /// Chains are in the order of their first faces.
+    ///
+    /// # Errors
+    /// Where two faces begin or two end at one node.
+    pub fn new(faces: &[[usize; 2]], place: impl Fn(usize) -> PlaneVector) -> Result<Self, SurfaceError> {
+        let mut beginning: HashMap<usize, usize> = HashMap::new();
+        let mut ending: HashMap<usize, usize> = HashMap::new();
+        for (index, [first, last]) in faces.iter().enumerate() {
+            if beginning.insert(*first, index).is_some() {
+                return Err(SurfaceError::Branches(*first));
+            }
+            if ending.insert(*last, index).is_some() {
+                return Err(SurfaceError::Branches(*last));
+            }
+        }
+        let mut surface = Self { nodes: Vec::new(), places: Vec::new(), faces: Vec::new(), chains: Vec::new() };
+        let mut index_of: HashMap<usize, usize> = HashMap::new();
+        let mut taken = vec![false; faces.len()];
+        for given in 0..faces.len() {
+            if taken[given] {
+                continue;
+            }
+            // Back to the beginning of the chain, or around to the same face.
+            let mut first = given;
+            while let Some(before) = ending.get(&faces[first][0]).copied().filter(|before| *before != given) {
+                first = before;
+            }
+            let chain = Chain { first: surface.faces.len(), count: 0, period: None };
+            let (mut face, mut along) = (first, 0.0);
+            let period = loop {
+                taken[face] = true;
+                let nodes = faces[face].map(|node| {
+                    *index_of.entry(node).or_insert_with(|| {
+                        surface.nodes.push(node);
+                        surface.places.push(place(node));
+                        surface.nodes.len() - 1
+                    })
+                });
+                let vector = difference(surface.places[nodes[1]], surface.places[nodes[0]]);
+                let end = along + product(vector, vector).sqrt();
+                surface.faces.push(SurfaceFace { nodes, along: [along, end], chain: surface.chains.len() });
+                along = end;
+                match beginning.get(&faces[face][1]) {
+                    Some(next) if *next == first => break Some(along),
+                    Some(next) => face = *next,
+                    None => break None,
+                }
+            };
+            surface.chains.push(Chain { count: surface.faces.len() - chain.first, period, ..chain });
+        }
+        Ok(surface)
+    }
+
+    /// The difference of two coordinates of one chain, the shorter way round a closed one.
+    pub fn way(&self, chain: usize, from: f64, to: f64) -> f64 {
+        match self.chains[chain].period {
+            Some(period) => (to - from) - period * ((to - from) / period).round(),
+            None => to - from,
+        }
+    }
+
+    /// The face before and the face after a node (an index into `nodes`).
+    pub fn faces_at(&self, node: usize) -> [Option<usize>; 2] {
+        let find = |end: usize| self.faces.iter().position(|face| face.nodes[end] == node);
+        [find(1), find(0)]
+    }
+}
+
+/// The distance of a point from a segment.
+pub(super) fn distance_from_segment(point: PlaneVector, [first, last]: [PlaneVector; 2]) -> f64 {
+    let (along, from) = (difference(last, first), difference(point, first));
+    let square = product(along, along);
+    let share = if square > 0.0 { (product(along, from) / square).clamp(0.0, 1.0) } else { 0.0 };
+    let rest = difference(from, along.map(|part| share * part));
+    product(rest, rest).sqrt()
+}
+
+/// The distance of two segments; 0 where they cross.
+pub(super) fn distance_of_segments(one: [PlaneVector; 2], other: [PlaneVector; 2]) -> f64 {
+    let side = |[first, last]: [PlaneVector; 2], point: PlaneVector| {
+        let (a, b) = (difference(last, first), difference(point, first));
+        a[0] * b[1] - a[1] * b[0]
+    };
+    let parts = |line: [PlaneVector; 2], ends: [PlaneVector; 2]| side(line, ends[0]) * side(line, ends[1]) < 0.0;
+    if parts(one, other) && parts(other, one) {
+        return 0.0;
+    }
+    let ends = one.map(|point| distance_from_segment(point, other));
+    let others = other.map(|point| distance_from_segment(point, one));
+    ends.into_iter().chain(others).fold(f64::INFINITY, f64::min)
+}

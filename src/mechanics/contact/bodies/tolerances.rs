@@ -1,0 +1,17 @@
+//! Tolerances of contacts between bodies.
+
+/// A face is not covered by a part of the opposite surface over less than this part of its length: of less, the round-off
+/// of the mean would be larger than 1e-6.
+pub(super) const LEAST_COVERED: f64 = 1e-8;
+
+/// Newton's method for the closest point ends at a correction below this (in lengths of faces).
+pub(super) const CLOSEST_POINT: f64 = 1e-15;
+
+/// Steps towards the closest point that are larger have to come nearer; smaller ones are Newton's near the solution.
+pub(super) const SMALL_STEP: f64 = 1e-4;
+
+/// Iterations for the closest point; from the best of the samples a few do.
+pub(super) const CLOSEST_POINT_ITERATIONS: usize = 60;
+
+/// Positions on each piece of a smoothed surface at which the closest point may be sought first.
+pub(super) const SAMPLES: usize = 4;
