@@ -143,11 +143,11 @@ pub use continuation::path::checkpoint::CheckpointError;
 pub use mechanics::structure::elements::bar::Strain;
 pub use model::decode::expanded;
 pub use model::request::{
-    Analysis, ArcLength, Certificate, Component, Contact, ContactDiscretisation, ContactRange, ContentEncoding, DisplacementBound,
-    ElasticConstants, Element, ElementReference, Events, Explore, ForceRange, JobRequest, LoadSign, LockingMend,
-    Material, MeshFile, MeshFormat, MeshGroup, Method, Model, Mpec, NamedSet, Obstacle, PlaneCondition, Polyline,
-    Record, RecordedContact, RecordedContacts, RecordedElements, RecordedSupports, Regularised, Side, Solid, SolidKind,
-    Stage, Surface, Units, Until,
+    Analysis, ArcLength, Certificate, Component, Contact, ContactDiscretisation, ContactRange, ContentEncoding,
+    DisplacementBound, ElasticConstants, Element, ElementReference, Events, Explore, ForceRange, JobRequest, LoadSign,
+    LockingMend, Material, MeshFile, MeshFormat, MeshGroup, Method, Model, Mpec, NamedSet, Obstacle, PlaneCondition,
+    Polyline, Record, RecordedContact, RecordedContacts, RecordedElements, RecordedSupports, Regularised, Side, Solid,
+    SolidKind, Stage, Surface, Units, Until,
 };
 pub use model::{InputError, InputErrors, read};
 pub use resources::cancel::CancelFlag;

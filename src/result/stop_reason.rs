@@ -29,6 +29,8 @@ pub enum StopReason {
     CornerNotAvailable,
     /// No step of at least `arc_length.min` leads to a point that keeps to the laws of contact and friction.
     ContactViolated,
+    /// A node in contact with another body has slid to the end of the surface that it touches.
+    SurfaceEnd,
     /// More contact modes than `max_modes` would have to be examined to go on.
     ModeLimit,
     /// Several nodes that touch in space without reaction may begin to slip at once, and no such direction was found.
@@ -65,6 +67,7 @@ impl StopReason {
             | Self::Degenerate
             | Self::CornerNotAvailable
             | Self::ContactViolated
+            | Self::SurfaceEnd
             | Self::ModeLimit
             | Self::SlipsNotFound
             | Self::MemoryLimit => Outcome::Stopped,
@@ -92,6 +95,7 @@ impl StopReason {
             Self::ContactViolated => {
                 "no step of at least arc_length.min leads to a point that keeps to the laws of contact and friction"
             }
+            Self::SurfaceEnd => "a node in contact has slid to the end of the surface that it touches",
             Self::ModeLimit => "more contact modes than max_modes would have to be examined to go on",
             Self::SlipsNotFound => {
                 "several nodes that touch in space without reaction may begin to slip at once, and no direction in which \

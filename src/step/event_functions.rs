@@ -18,6 +18,7 @@ use crate::mechanics::multi_contact::changeable_contacts::none_from_cone;
 use crate::mechanics::multi_contact::planar;
 use crate::mechanics::multi_contact::spatial::ContactGroup;
 use crate::mechanics::multi_contact::spatial::cone_sum;
+use crate::mechanics::problem::contact_jacobian;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_contact_forces;
 use crate::mechanics::problem::state::{Rate, State};
@@ -55,6 +56,8 @@ pub enum EventFunction {
     LoadRate {
         sign: f64,
     },
+    /// The distance of a closed contact to the end of the surface that it touches.
+    SurfaceEnd(usize),
     End(End),
 }
 
@@ -77,6 +80,10 @@ pub fn of_mode(loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate)
         }
     }
     for (contact, mode) in modes.iter().enumerate() {
+        let end = EventFunction::SurfaceEnd(contact);
+        if mode.is_active() && end.value(loading, modes, state, rate) < f64::INFINITY {
+            event_functions.push(end);
+        }
         match mode {
             Mode::Stick if together.contains(&contact) => {}
             Mode::Free => event_functions.push(EventFunction::Gap(contact)),
@@ -104,7 +111,7 @@ impl EventFunction {
         match self {
             Self::Gap(_) | Self::Normal(_) | Self::Cone { .. } | Self::Sliding(_) | Self::Facet { .. } => true,
             Self::Slide { .. } | Self::Hold { .. } => true,
-            Self::Return { .. } | Self::LoadRate { .. } | Self::End(_) => false,
+            Self::Return { .. } | Self::LoadRate { .. } | Self::SurfaceEnd(_) | Self::End(_) => false,
         }
     }
 
@@ -113,7 +120,7 @@ impl EventFunction {
         match self {
             Self::Normal(_) | Self::Cone { .. } | Self::Facet { .. } => true,
             Self::Slide { .. } | Self::Hold { .. } | Self::Return { .. } => true,
-            Self::Gap(_) | Self::Sliding(_) | Self::LoadRate { .. } | Self::End(_) => false,
+            Self::Gap(_) | Self::Sliding(_) | Self::LoadRate { .. } | Self::SurfaceEnd(_) | Self::End(_) => false,
         }
     }
 
@@ -152,6 +159,9 @@ impl EventFunction {
                 }
             }
             Self::LoadRate { sign } => sign * rate.load,
+            Self::SurfaceEnd(contact) => {
+                contact_jacobian::distance_to_end(loading.structure, &loading.contacts[contact], &state.displacement)
+            }
             Self::End(End::Load { bound, sign }) => sign * (bound - state.load),
             Self::End(End::Displacement { freedom, bound, sign }) => sign * (bound - state.displacement[freedom]),
             Self::End(End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_)) => f64::INFINITY,
@@ -183,7 +193,7 @@ impl EventFunction {
                     _ => group.margin_slope(&force, &change),
                 })
             }
-            Self::Sliding(_) | Self::LoadRate { .. } | Self::Facet { .. } => None,
+            Self::Sliding(_) | Self::LoadRate { .. } | Self::Facet { .. } | Self::SurfaceEnd(_) => None,
             Self::End(End::Load { sign, .. }) => Some(-sign * rate.load),
             Self::End(End::Displacement { freedom, sign, .. }) => Some(-sign * rate.displacement[freedom]),
             Self::End(End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_)) => None,
@@ -200,7 +210,8 @@ impl EventFunction {
                 Some(dot(&scaled(&directions, 0.5), &chord))
             }
             Self::LoadRate { sign } => Some(sign * (end.load - start.load)),
-            Self::Gap(_) | Self::Normal(_) | Self::Cone { .. } | Self::Facet { .. } | Self::End(_) => None,
+            Self::Gap(_) | Self::Normal(_) | Self::Cone { .. } | Self::Facet { .. } => None,
+            Self::SurfaceEnd(_) | Self::End(_) => None,
             Self::Slide { .. } | Self::Hold { .. } | Self::Return { .. } => None,
         }
     }
@@ -224,7 +235,7 @@ impl EventFunction {
                 let of = |contact: &usize| loading.force_scale_at(*contact, state, force_scale);
                 loading.corners[corner].contacts.iter().map(of).fold(0.0, f64::max)
             }
-            Self::Gap(_) | Self::Sliding(_) | Self::LoadRate { .. } | Self::End(_) => 1.0,
+            Self::Gap(_) | Self::Sliding(_) | Self::LoadRate { .. } | Self::SurfaceEnd(_) | Self::End(_) => 1.0,
         }
     }
 

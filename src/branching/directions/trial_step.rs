@@ -259,7 +259,7 @@ impl Trial<'_> {
                 | EventFunction::Slide { .. }
                 | EventFunction::Hold { .. }
                 | EventFunction::Return { .. } => CLEAR_SLOPE,
-                EventFunction::LoadRate { .. } | EventFunction::End(_) => CLEAR_SLOPE,
+                EventFunction::LoadRate { .. } | EventFunction::SurfaceEnd(_) | EventFunction::End(_) => CLEAR_SLOPE,
             };
             if last < -TRIAL_VIOLATION || grown < -clear {
                 culprits.extend(contacts_of(loading, event_function));
@@ -289,6 +289,6 @@ fn contacts_of(loading: Loading<'_>, event_function: EventFunction) -> Vec<usize
         | EventFunction::Slide { corner }
         | EventFunction::Hold { corner }
         | EventFunction::Return { corner } => loading.corners[corner].contacts.clone(),
-        EventFunction::LoadRate { .. } | EventFunction::End(_) => Vec::new(),
+        EventFunction::LoadRate { .. } | EventFunction::SurfaceEnd(_) | EventFunction::End(_) => Vec::new(),
     }
 }

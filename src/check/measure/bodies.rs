@@ -43,6 +43,8 @@ struct OppositeFace {
     /// Faces before and after, as indices.
     beside: [Option<usize>; 2],
     period: Option<f64>,
+    /// Number of its chain: the index of the chain's first face.
+    chain: usize,
 }
 
 /// The contact at a state.
@@ -89,11 +91,7 @@ fn lines(model: &Model, name: &str) -> Vec<[usize; 2]> {
             at.is_some_and(|at| nodes[(at + 1) % nodes.len()] == *other)
         };
         let turn = solid.into_iter().find_map(|nodes| {
-            if follows(nodes, first, last) {
-                Some(true)
-            } else {
-                follows(nodes, last, first).then_some(false)
-            }
+            if follows(nodes, first, last) { Some(true) } else { follows(nodes, last, first).then_some(false) }
         });
         let [first, last] = [number(first)?, number(last)?];
         Some(if turn == Some(true) { [last, first] } else { [first, last] })
@@ -102,7 +100,8 @@ fn lines(model: &Model, name: &str) -> Vec<[usize; 2]> {
 }
 
 fn distance(model: &Model, nodes: [usize; 2]) -> f64 {
-    let [first, last] = nodes.map(|node| model.nodes.get_index(node).map_or(MeasuredVector::zeros(), |(_, at)| padded(at)));
+    let [first, last] =
+        nodes.map(|node| model.nodes.get_index(node).map_or(MeasuredVector::zeros(), |(_, at)| padded(at)));
     (last - first).norm()
 }
 
@@ -112,6 +111,7 @@ fn opposite(model: &Model, lines: &[[usize; 2]]) -> Vec<OppositeFace> {
     let beginning: HashMap<usize, usize> = lines.iter().enumerate().map(|(index, line)| (line[0], index)).collect();
     let mut along = vec![None; lines.len()];
     let mut periods = vec![None; lines.len()];
+    let mut chains = vec![0; lines.len()];
     for start in 0..lines.len() {
         if along[start].is_some() {
             continue;
@@ -124,6 +124,7 @@ fn opposite(model: &Model, lines: &[[usize; 2]]) -> Vec<OppositeFace> {
         let closed = loop {
             let to = from + distance(model, lines[face]);
             along[face] = Some([from, to]);
+            chains[face] = first;
             chain.push(face);
             from = to;
             match beginning.get(&lines[face][1]) {
@@ -135,12 +136,13 @@ fn opposite(model: &Model, lines: &[[usize; 2]]) -> Vec<OppositeFace> {
         chain.into_iter().filter(|_| closed).for_each(|face| periods[face] = Some(from));
     }
     let beside = |line: &[usize; 2]| [ending.get(&line[0]).copied(), beginning.get(&line[1]).copied()];
-    let all = lines.iter().zip(along).zip(periods);
-    all.map(|((nodes, along), period)| OppositeFace {
+    let all = lines.iter().zip(along).zip(periods).zip(chains);
+    all.map(|(((nodes, along), period), chain)| OppositeFace {
         nodes: *nodes,
         along: along.unwrap_or_default(),
         beside: beside(nodes),
         period,
+        chain,
     })
     .collect()
 }
@@ -163,10 +165,8 @@ impl MeasuredBody {
         };
         let opposite = opposite(model, &lines(model, against));
         let numbers = faces.iter().flatten().chain(opposite.iter().flat_map(|face| &face.nodes));
-        let places: HashMap<usize, MeasuredVector> = numbers
-            .chain([&node])
-            .filter_map(|node| Some((*node, padded(model.nodes.get_index(*node)?.1))))
-            .collect();
+        let places: HashMap<usize, MeasuredVector> =
+            numbers.chain([&node]).filter_map(|node| Some((*node, padded(model.nodes.get_index(*node)?.1)))).collect();
         let reach = places.values().map(largest).fold(0.0, f64::max);
         let mut body = Self { faces, node, opposite, places, overlap: 0.0, reach };
         let undeformed = |node: usize| [0, 1].map(|k| Number::constant(body.place(node)[k]));
@@ -240,16 +240,43 @@ impl MeasuredBody {
         if self.faces.is_empty() {
             return self.nearest(point);
         }
+        // Whether a face covers a part of the node's faces: itself, and with what goes on beyond an end of the surface.
         let covers = |face: &OppositeFace| {
-            self.faces.iter().any(|[first, last]| {
+            let mut found = [false; 2];
+            for [first, last] in &self.faces {
                 let (start, edge) = (point(*first), minus(point(*last), point(*first)));
                 let square = product(edge, edge).0;
                 let [high, low] = face.nodes.map(|node| product(minus(point(node), start), edge).0 / square);
-                low < high && high.min(1.0) - low.max(0.0) > COVERED
-            })
+                if low >= high {
+                    continue;
+                }
+                found[0] |= high.min(1.0) - low.max(0.0) > COVERED;
+                let high = if face.beside[0].is_none() { 1.0 } else { high.min(1.0) };
+                let low = if face.beside[1].is_none() { 0.0 } else { low.max(0.0) };
+                found[1] |= high - low > COVERED;
+            }
+            found
         };
-        let faces = (0..self.opposite.len()).filter(|face| covers(&self.opposite[*face])).collect();
+        let chain = self.nearest_chain(point);
+        let of_chain = (0..self.opposite.len()).filter(|face| self.opposite[*face].chain == chain);
+        let found: Vec<(usize, [bool; 2])> = of_chain.map(|face| (face, covers(&self.opposite[face]))).collect();
+        let is_covered = found.iter().any(|(_, covers)| covers[0]);
+        let faces = found.iter().filter(|(_, covers)| is_covered && covers[1]).map(|(face, _)| *face).collect();
         Found { faces, place: 0.0, slope: 1.0 }
+    }
+
+    /// The chain of opposite faces that is nearest to the node.
+    fn nearest_chain(&self, point: &dyn Fn(usize) -> Point) -> usize {
+        let own = point(self.node);
+        let distance = |face: &OppositeFace| {
+            let [first, last] = face.nodes.map(point);
+            let (edge, from) = (minus(last, first), minus(own, first));
+            let share = (product(edge, from).0 / product(edge, edge).0).clamp(0.0, 1.0);
+            let rest = minus(from, edge.map(|part| part.times(share)));
+            product(rest, rest).0
+        };
+        let nearest = self.opposite.iter().min_by(|one, other| distance(one).total_cmp(&distance(other)));
+        nearest.map_or(0, |face| face.chain)
     }
 
     fn values(&self, found: &Found, point: &dyn Fn(usize) -> Point) -> Values {
@@ -296,7 +323,9 @@ impl MeasuredBody {
                 let ends = face.nodes.map(|node| minus(point(node), start));
                 let [high, low] = ends.map(|end| product(end, along));
                 let [height_high, height_low] = ends.map(|end| product(end, across));
-                let (from, to) = (larger(low, zero), smaller(high, length));
+                // The last face goes on straight beyond an end of the surface.
+                let from = if face.beside[1].is_none() { zero } else { larger(low, zero) };
+                let to = if face.beside[0].is_none() { length } else { smaller(high, length) };
                 if high.0 <= low.0 || to.0 - from.0 <= COVERED * length.0 {
                     continue;
                 }
@@ -308,7 +337,8 @@ impl MeasuredBody {
                     let s = from.plus(width.times(fraction));
                     let share = s.minus(low).over(high.minus(low));
                     let height = height_low.plus(share.by(height_high.minus(height_low)));
-                    let position = share.times(face.along[0] - face.along[1]).plus(Number::constant(face.along[1] + shift));
+                    let position =
+                        share.times(face.along[0] - face.along[1]).plus(Number::constant(face.along[1] + shift));
                     let shape = [Number::constant(1.0).minus(s.over(length)), s.over(length)];
                     let weight = width.times(weight);
                     for k in 0..2 {
@@ -499,8 +529,7 @@ fn weights(t: Number, ends: [bool; 2]) -> [[Number; 4]; 2] {
     let second = |a: Number| Number::constant(2.0 / 3.0).minus(a.by(a)).plus(a.by(a).by(a).times(0.5));
     let values = [cube(rest), second(bounded), second(rest), cube(bounded)];
     let second_slope = |a: Number| a.times(-2.0).plus(a.by(a).times(1.5));
-    let slopes =
-        [square(rest).times(-1.0), second_slope(bounded), second_slope(rest).times(-1.0), square(bounded)];
+    let slopes = [square(rest).times(-1.0), second_slope(bounded), second_slope(rest).times(-1.0), square(bounded)];
     let beyond = t.minus(bounded);
     [std::array::from_fn(|k| values[k].plus(beyond.by(slopes[k]))), slopes]
 }

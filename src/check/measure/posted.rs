@@ -114,7 +114,12 @@ impl Posted {
             let node = model.nodes.get_index_of(&contact.node)?;
             let friction = contact.friction;
             if let Some(body) = MeasuredBody::new(model, contact) {
-                return Some(PostedContact { node, counterpart: Counterpart::Body(Box::new(body)), motion: None, friction });
+                return Some(PostedContact {
+                    node,
+                    counterpart: Counterpart::Body(Box::new(body)),
+                    motion: None,
+                    friction,
+                });
             }
             let counterpart = Counterpart::Obstacle(model.obstacles.get_index_of(&contact.obstacle)?);
             let motion = moving.get_index_of(contact.obstacle.as_str());
@@ -220,12 +225,7 @@ impl Posted {
 
     /// A distance that has to be covered before the contact can close, and the part of it that bodies and obstacle cover
     /// per unit motion of the nodes.
-    pub fn clearance(
-        &self,
-        contact: &PostedContact,
-        loading: &PostedLoading,
-        displacements: &[MeasuredVector],
-    ) -> f64 {
+    pub fn clearance(&self, contact: &PostedContact, loading: &PostedLoading, displacements: &[MeasuredVector]) -> f64 {
         match &contact.counterpart {
             Counterpart::Obstacle(_) => self.frame(contact, loading, displacements).gap,
             // Both bodies move.

@@ -84,6 +84,13 @@ fn arrive(trace: &mut PathTrace<'_>, event: Option<EventFunction>, crossing: Opt
             }
             look_around(trace, incoming, PointKind::SmoothLimit, Some(what.to_owned()), Some(-sign), false)
         }
+        Some(EventFunction::SurfaceEnd(contact)) => {
+            let names = trace.names().nth(contact);
+            let event = names.map(|(node, surface)| format!("{node} on {surface}: at the end of the surface"));
+            let stop = Some(StopReason::SurfaceEnd);
+            let point = Point::plain(PointKind::End, event);
+            Arrival { point, options: Vec::new(), taken: None, stop, stage_ends: false, unconfirmed: false }
+        }
         // The mode continues: the node is still held in its corner, by a force at which it may slide again.
         Some(EventFunction::Return { .. }) => look_around(trace, incoming, PointKind::Regular, None, None, false),
         Some(

@@ -62,6 +62,12 @@ pub trait CoupledKinematics: Debug + Send + Sync {
         add: &mut dyn FnMut(usize, usize, f64),
     );
 
+    /// The distance to the end of the surface that is touched, beyond which there is no contact; infinite where there is no
+    /// such end. Positive before it.
+    fn distance_to_end(&self, _displacement: LocalDisplacements<'_>) -> f64 {
+        f64::INFINITY
+    }
+
     /// A distance that has to be covered before the contact can close, and by how much a unit motion of the degrees of
     /// freedom shortens it at most; `None` where no bound is known: the contact then always counts as within reach.
     fn clearance(&self, _displacement: LocalDisplacements<'_>) -> Option<(f64, f64)> {

@@ -42,8 +42,7 @@ fn note_loose_parts(scope: &Scope, mistakes: &mut Mistakes) {
     for node in scope.model.contacts.iter().filter_map(|contact| number(&contact.node)) {
         held[node] = true;
     }
-    let against: HashSet<&str> =
-        scope.model.contacts.iter().filter_map(|contact| contact.against.as_deref()).collect();
+    let against: HashSet<&str> = scope.model.contacts.iter().filter_map(|contact| contact.against.as_deref()).collect();
     for (_, surface) in scope.model.surfaces.iter().filter(|(name, _)| against.contains(name.as_str())) {
         surface.faces.iter().flatten().filter_map(number).for_each(|node| held[node] = true);
     }

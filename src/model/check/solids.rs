@@ -204,11 +204,8 @@ pub(super) fn loads(scope: &Scope, stage: &Stage, at: &DocumentPlace, mistakes: 
             loaded |= solids.filter(|(_, solid)| solid.material == *name).any(|(_, solid)| moves(&solid.nodes, force));
         }
     }
-    let sides = if stage.tractions.is_empty() && stage.pressures.is_empty() {
-        HashSet::new()
-    } else {
-        sides_of_bars(scope)
-    };
+    let sides =
+        if stage.tractions.is_empty() && stage.pressures.is_empty() { HashSet::new() } else { sides_of_bars(scope) };
     let at_tractions = at.member("tractions");
     for (name, traction) in &stage.tractions {
         let at = at_tractions.member(name);

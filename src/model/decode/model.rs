@@ -7,7 +7,8 @@ use crate::model::decode::reader::{Choices, Fields, Input, count, number, number
 use crate::model::decode::{meshes, obstacles, solids};
 use crate::model::input::mistakes::Mistakes;
 use crate::model::request::{
-    BendingStiffness, Component, Contact, ContactDiscretisation, DisplacementBound, Element, Model, Stage, Strain, Units, Until,
+    BendingStiffness, Component, Contact, ContactDiscretisation, DisplacementBound, Element, Model, Stage, Strain,
+    Units, Until,
 };
 
 const MODEL: Fields = Fields {
@@ -310,9 +311,8 @@ fn contact(input: &Input, mistakes: &mut Mistakes) -> Option<Contact> {
         None => object.required("node", mistakes, text),
     };
     let against = object.optional("against", mistakes, text)?;
-    let discretisation = object.optional("discretisation", mistakes, |input, mistakes| {
-        input.choice(&DISCRETISATION, mistakes)
-    });
+    let discretisation =
+        object.optional("discretisation", mistakes, |input, mistakes| input.choice(&DISCRETISATION, mistakes));
     let friction = object.with_default("friction", 0.0, mistakes, number);
     let obstacle = match &against {
         Some(_) => object.with_default("obstacle", String::new(), mistakes, text),

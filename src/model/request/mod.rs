@@ -26,9 +26,9 @@ pub use record::{
     RecordedSupports,
 };
 pub use structure::{
-    BendingStiffness, Component, Contact, ContactDiscretisation, ContentEncoding, DisplacementBound, ElasticConstants, Element, Material,
-    MeshFile, MeshFormat, MeshGroup, Model, NamedSet, Obstacle, PlaneCondition, Polyline, Side, Solid, Stage, Surface,
-    Units, Until,
+    BendingStiffness, Component, Contact, ContactDiscretisation, ContentEncoding, DisplacementBound, ElasticConstants,
+    Element, Material, MeshFile, MeshFormat, MeshGroup, Model, NamedSet, Obstacle, PlaneCondition, Polyline, Side,
+    Solid, Stage, Surface, Units, Until,
 };
 
 /// A model and how to trace it.

@@ -73,12 +73,16 @@ impl<'a> ContactSurfaces<'a> {
                 FaceMatch::Face(face) => {
                     let solid = self.model.elements.get(face.element).and_then(Element::solid);
                     if solid.is_some_and(|(_, solid)| solid.plane == Some(PlaneCondition::Axisymmetric)) {
-                        return Err("surfaces of bodies of revolution do not touch each other in this version".to_owned());
+                        return Err(
+                            "surfaces of bodies of revolution do not touch each other in this version".to_owned()
+                        );
                     }
                     let [first, last] = face.nodes[..] else {
-                        return Err("the surface has faces of three nodes; surfaces that touch each other have faces of two: \
+                        return Err(
+                            "the surface has faces of three nodes; surfaces that touch each other have faces of two: \
                                     mesh the body with triangle3 or quadrilateral4"
-                            .to_owned());
+                                .to_owned(),
+                        );
                     };
                     // Solids have their faces with the outer side on the right.
                     lines.push([last, first]);
@@ -87,10 +91,18 @@ impl<'a> ContactSurfaces<'a> {
                 FaceMatch::None | FaceMatch::Inside => return Err("the surface has faces that are none".to_owned()),
             }
         }
-        OppositeSurface::new(&lines, |node| self.place(node)).map_err(|error| {
-            let SurfaceError::Branches(node) = error;
-            let name = self.model.nodes.get_index(node).map_or("", |(name, _)| name.as_str());
-            format!("{error} {}: the surface branches there; one face before and one after it are expected", quoted(name))
+        let name =
+            |node: usize| quoted(self.model.nodes.get_index(node).map_or("", |(name, _)| name.as_str())).to_string();
+        OppositeSurface::new(&lines, |node| self.place(node)).map_err(|error| match error {
+            SurfaceError::Branches(node) => {
+                format!(
+                    "{error} {}: the surface branches there; one face before and one after it are expected",
+                    name(node)
+                )
+            }
+            SurfaceError::NoLength([first, last]) => {
+                format!("{error}: {} and {} are at one place", name(first), name(last))
+            }
         })
     }
 
@@ -111,46 +123,62 @@ impl<'a> ContactSurfaces<'a> {
         let opposite = self.find(against, "against")?;
         let name = || quoted(&contact.node).to_string();
         if opposite.nodes.contains(&node) {
-            let why = format!("{} is a node of {}, too; a surface does not touch itself in this version", name(), quoted(against));
+            let why = format!(
+                "{} is a node of {}, too; a surface does not touch itself in this version",
+                name(),
+                quoted(against)
+            );
             return Err(("against", why));
         }
         let own = contact.surface.as_deref().map(|surface| self.find(surface, "surface")).transpose()?;
         let size = |nodes: [PlaneVector; 2]| (nodes[0][0] - nodes[1][0]).hypot(nodes[0][1] - nodes[1][1]);
-        let (kinematics, gap, face): (Arc<dyn CoupledKinematics>, f64, f64) = match contact.discretisation.unwrap_or_default() {
-            ContactDiscretisation::Mortar => {
-                let own = own.ok_or_else(|| {
-                    let why = "a mortar contact is of a surface: name the `surface` of the node, or take \
+        let (kinematics, gap, face): (Arc<dyn CoupledKinematics>, f64, f64) =
+            match contact.discretisation.unwrap_or_default() {
+                ContactDiscretisation::Mortar => {
+                    let own = own.ok_or_else(|| {
+                        let why = "a mortar contact is of a surface: name the `surface` of the node, or take \
                                `\"discretisation\": \"node_to_surface\"`";
-                    ("node", why.to_owned())
-                })?;
-                let Some(at) = own.nodes.iter().position(|one| *one == node) else {
-                    let surface = quoted(contact.surface.as_deref().unwrap_or_default()).to_string();
-                    return Err(("node", format!("{} is no node of {surface}", name())));
-                };
-                let beside = own.faces_at(at);
-                let neighbours = [0, 1].map(|end| beside[end].map(|face| own.nodes[own.faces[face].nodes[end]]));
-                if let Some(shared) = neighbours.into_iter().flatten().find(|node| opposite.nodes.contains(node)) {
-                    let shared = self.model.nodes.get_index(shared).map_or("", |(name, _)| name.as_str());
-                    let why = format!("{} is a node of both surfaces; a surface does not touch itself in this version", quoted(shared));
-                    return Err(("against", why));
+                        ("node", why.to_owned())
+                    })?;
+                    let Some(at) = own.nodes.iter().position(|one| *one == node) else {
+                        let surface = quoted(contact.surface.as_deref().unwrap_or_default()).to_string();
+                        return Err(("node", format!("{} is no node of {surface}", name())));
+                    };
+                    let beside = own.faces_at(at);
+                    let neighbours = [0, 1].map(|end| beside[end].map(|face| own.nodes[own.faces[face].nodes[end]]));
+                    if let Some(shared) = neighbours.into_iter().flatten().find(|node| opposite.nodes.contains(node)) {
+                        let shared = self.model.nodes.get_index(shared).map_or("", |(name, _)| name.as_str());
+                        let why = format!(
+                            "{} is a node of both surfaces; a surface does not touch itself in this version",
+                            quoted(shared)
+                        );
+                        return Err(("against", why));
+                    }
+                    let kinematics = MortarNode::new(node, neighbours, opposite, |node| self.place(node));
+                    let gap = kinematics.initial_gap();
+                    let sizes =
+                        neighbours.into_iter().flatten().map(|other| size([self.place(node), self.place(other)]));
+                    let face = sizes.fold(f64::INFINITY, f64::min);
+                    (Arc::new(kinematics), gap, face)
                 }
-                let kinematics = MortarNode::new(node, neighbours, opposite, |node| self.place(node));
-                let gap = kinematics.initial_gap();
-                let sizes = neighbours.into_iter().flatten().map(|other| size([self.place(node), self.place(other)]));
-                let face = sizes.fold(f64::INFINITY, f64::min);
-                (Arc::new(kinematics), gap, face)
-            }
-            ContactDiscretisation::NodeToSurface => {
-                let sizes = opposite.faces.iter().map(|face| size(face.nodes.map(|node| opposite.places[node])));
-                let face = sizes.fold(f64::INFINITY, f64::min);
-                let kinematics = NodeToSurface::new(node, self.place(node), opposite);
-                let gap = kinematics.initial_gap();
-                (Arc::new(kinematics), gap, face)
-            }
-        };
+                ContactDiscretisation::NodeToSurface => {
+                    let sizes = opposite.faces.iter().map(|face| size(face.nodes.map(|node| opposite.places[node])));
+                    let face = sizes.fold(f64::INFINITY, f64::min);
+                    let kinematics = NodeToSurface::new(node, self.place(node), opposite);
+                    let gap = kinematics.initial_gap();
+                    (Arc::new(kinematics), gap, face)
+                }
+            };
         if !gap.is_finite() || gap < -MESHED_PENETRATION * face {
             let found = gap * self.unit;
-            return Err(("node", format!("{} is behind the surface {} at the start, gap {found:?}; a gap of 0 or more is expected", name(), quoted(against))));
+            return Err((
+                "node",
+                format!(
+                    "{} is behind the surface {} at the start, gap {found:?}; a gap of 0 or more is expected",
+                    name(),
+                    quoted(against)
+                ),
+            ));
         }
         let reach = kinematics.nodes().iter().filter_map(|node| self.model.nodes.get_index(*node));
         let reach = reach.flat_map(|(_, place)| place).fold(0.0_f64, |most, value| most.max(value.abs())) / self.unit;

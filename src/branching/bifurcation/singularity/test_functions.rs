@@ -94,9 +94,7 @@ fn counted_modes<'s>(
     state: &'s State,
 ) -> Option<(Vec<Mode>, &'s State)> {
     let unknowns = loading.structure.unknowns();
-    if unknowns < 2
-        || (loading.structure.is_linear() && !loading.contacts.iter().any(ContactPair::is_curved))
-    {
+    if unknowns < 2 || (loading.structure.is_linear() && !loading.contacts.iter().any(ContactPair::is_curved)) {
         return None;
     }
     // Each closed contact removes at least one motion, except where several contacts of a corner share a node.

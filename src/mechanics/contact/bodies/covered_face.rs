@@ -2,7 +2,9 @@
 //! give by the positions of the nodes.
 
 use crate::algebra::differential::WithGradient;
-use crate::mechanics::contact::bodies::face_moments::{FaceAtNode, MOMENTS, NodalValues, OF_FACE, moments, nodal_values};
+use crate::mechanics::contact::bodies::face_moments::{
+    FaceAtNode, MOMENTS, NodalValues, OF_FACE, moments, nodal_values,
+};
 use crate::mechanics::contact::bodies::{PlaneVector, turned_left};
 use smallvec::SmallVec;
 
@@ -13,6 +15,8 @@ pub(super) struct Piece {
     /// Length of the face, then `s` and `h` of both nodes.
     pub(super) values: [f64; 5],
     pub(super) along: [f64; 2],
+    /// Whether the surface ends at the first and at the last node; the piece goes on straight there.
+    pub(super) goes_on: [bool; 2],
 }
 
 /// A face in its present position, with what covers it.
@@ -38,7 +42,7 @@ pub(super) fn each_gradient(covered: &[Covered], weights: &[f64; VARIABLES], mut
         each(last, face.along.map(|part| by_length * part));
         for piece in &face.pieces {
             let variables = std::array::from_fn(|k| WithGradient::<5>::variable(piece.values[k], k));
-            let moments = moments(&variables, piece.along, face.at.from);
+            let moments = moments(&variables, piece.along, piece.goes_on, face.at.from);
             let mut slopes = [0.0; 5];
             for (moment, weight) in moments.iter().zip(weights) {
                 slopes.iter_mut().zip(&moment.gradient).for_each(|(sum, part)| *sum += weight * part);
@@ -52,7 +56,7 @@ impl Covered {
     pub(super) fn moments(&self) -> [f64; OF_FACE] {
         let mut sums = [0.0; OF_FACE];
         for piece in &self.pieces {
-            let own = moments(&piece.values, piece.along, self.at.from);
+            let own = moments(&piece.values, piece.along, piece.goes_on, self.at.from);
             sums.iter_mut().zip(own).for_each(|(sum, part)| *sum += part);
         }
         sums[MOMENTS] = self.length;

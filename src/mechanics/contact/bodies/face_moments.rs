@@ -7,7 +7,8 @@
 //! W_k = ∫ s^k ds  (k = 0, 1, 2),    F_k = ∫ h s^k ds,    S_k = ∫ S s^k ds  (k = 0, 1),    Λ = ∫ |dS/ds| ds
 //! ```
 //!
-//! They are twice differentiable in the coordinates as long as no node passes the end of the face, and once at that.
+//! They are twice differentiable in the coordinates as long as no node passes the end of the face, and once at that. An
+//! end of the opposite surface would spoil this; the last face goes on straight beyond it.
 
 use crate::algebra::differential::Differential;
 
@@ -19,12 +20,13 @@ pub(super) const OF_FACE: usize = MOMENTS + 1;
 
 /// The moments of one piece. `piece`: the length of the face, then `s` and `h` of the first node of the opposite face
 /// and `s` and `h` of its last one; `along`: its coordinates along the opposite surface; `from`: the position on the face
-/// from which `s` is counted in the moments.
-pub(super) fn moments<D: Differential>(piece: &[D; 5], along: [f64; 2], from: f64) -> [D; MOMENTS] {
+/// from which `s` is counted in the moments; `goes_on`: whether the piece goes on straight beyond its first and its last
+/// node.
+pub(super) fn moments<D: Differential>(piece: &[D; 5], along: [f64; 2], goes_on: [bool; 2], from: f64) -> [D; MOMENTS] {
     let [length, first, first_height, last, last_height] = *piece;
     // The opposite surface runs the other way: its last node is on the side of smaller s.
-    let low = if last.value() > 0.0 { last } else { D::constant(0.0) };
-    let high = if first.value() < length.value() { first } else { length };
+    let low = if last.value() > 0.0 && !goes_on[1] { last } else { D::constant(0.0) };
+    let high = if first.value() < length.value() && !goes_on[0] { first } else { length };
     let width = high - low;
     let middle = (high + low).times(0.5);
     let inverse = (first - last).reciprocal();
@@ -83,8 +85,13 @@ pub(super) fn nodal_values<D: Differential>(faces: &[(FaceAtNode, [D; OF_FACE])]
             let mean = mean * inverse;
             mean + (first * inverse - centre * mean) * lever
         };
-        let parts =
-            [weight, weight * fitted(*heights, *heights_first), weight * fitted(*places, *places_first), *area, *undeformed];
+        let parts = [
+            weight,
+            weight * fitted(*heights, *heights_first),
+            weight * fitted(*places, *places_first),
+            *area,
+            *undeformed,
+        ];
         sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum = *sum + part);
     }
     let [weight, gap, place, area, undeformed] = sums;

@@ -14,9 +14,11 @@
 
 use crate::mechanics::contact::bodies::covered_face::{Covered, Met, Piece, each_gradient, nodal_gradients};
 use crate::mechanics::contact::bodies::face_moments::{FaceAtNode, NodalValues, OF_FACE, nodal_values};
-use crate::mechanics::contact::bodies::opposite_surface::{OppositeSurface, distance_of_segments};
+use crate::mechanics::contact::bodies::opposite_surface::{
+    OppositeSurface, SurfaceFace, distance_from_segment, distance_of_segments,
+};
 use crate::mechanics::contact::bodies::second_derivatives;
-use crate::mechanics::contact::bodies::tolerances::LEAST_COVERED;
+use crate::mechanics::contact::bodies::tolerances::{LAST_COVERED, LEAST_COVERED};
 use crate::mechanics::contact::bodies::{PlaneVector, difference, product, turned_left};
 use crate::mechanics::contact::kinematics::{CoupledKinematics, LocalDisplacements};
 use crate::mechanics::contact::vector::Vector;
@@ -81,10 +83,25 @@ impl MortarNode {
         [place[0] + displacement(2 * node), place[1] + displacement(2 * node + 1)]
     }
 
-    /// The faces of which a part is covered.
+    /// The chain of the opposite surface that is nearest to the node.
+    fn chain(&self, displacement: LocalDisplacements<'_>) -> usize {
+        if self.opposite.chains.len() == 1 {
+            return 0;
+        }
+        let (own, place) = (self.places.len(), self.position(displacement, 0));
+        let distance = |face: &SurfaceFace| {
+            distance_from_segment(place, face.nodes.map(|node| self.position(displacement, own + node)))
+        };
+        let nearest = self.opposite.faces.iter().map(|face| (distance(face), face.chain));
+        nearest.fold((f64::INFINITY, 0), |best, other| if other.0 < best.0 { other } else { best }).1
+    }
+
+    /// The faces with what is opposite; none where no part of any is covered.
     fn covered(&self, displacement: LocalDisplacements<'_>) -> SmallVec<[Covered; 2]> {
         let own = self.places.len();
-        let mut reference: Option<(usize, f64)> = None;
+        let chain = self.chain(displacement);
+        let mut reference: Option<f64> = None;
+        let mut is_covered = false;
         let mut all = SmallVec::new();
         for nodes in &self.faces {
             let [first, last] = nodes.map(|node| self.position(displacement, node));
@@ -94,28 +111,31 @@ impl MortarNode {
             let normal = turned_left(along);
             let mut pieces: SmallVec<[Piece; 4]> = SmallVec::new();
             let (mut area, mut centre) = (0.0, 0.0);
-            for face in &self.opposite.faces {
+            for face in self.opposite.faces.iter().filter(|face| face.chain == chain) {
                 let ends = face.nodes.map(|node| difference(self.position(displacement, own + node), first));
                 let [s_first, s_last] = ends.map(|end| product(along, end));
-                let width = s_first.min(length) - s_last.max(0.0);
                 // Faces that look the other way run the other way.
-                if !(s_last < s_first && width > LEAST_COVERED * length) {
+                if s_last >= s_first {
+                    continue;
+                }
+                is_covered |= s_first.min(length) - s_last.max(0.0) > LEAST_COVERED * length;
+                let high = if face.ends[0] { length } else { s_first.min(length) };
+                let low = if face.ends[1] { 0.0 } else { s_last.max(0.0) };
+                let width = high - low;
+                if width <= LEAST_COVERED * length {
                     continue;
                 }
                 // Around a closed surface coordinates jump; all are counted from the first.
-                let (chain, from) = *reference.get_or_insert((face.chain, face.along[0]));
-                let shift = if chain == face.chain {
-                    from + self.opposite.way(chain, from, face.along[0]) - face.along[0]
-                } else {
-                    0.0
-                };
+                let from = *reference.get_or_insert(face.along[0]);
+                let shift = from + self.opposite.way(chain, from, face.along[0]) - face.along[0];
                 let [h_first, h_last] = ends.map(|end| product(normal, end));
                 area += width;
-                centre += width * 0.5 * (s_first.min(length) + s_last.max(0.0));
+                centre += width * 0.5 * (high + low);
                 pieces.push(Piece {
                     nodes: face.nodes.map(|node| own + node),
                     values: [length, s_first, h_first, s_last, h_last],
                     along: face.along.map(|place| place + shift),
+                    goes_on: face.ends,
                 });
             }
             if !pieces.is_empty() {
@@ -123,7 +143,7 @@ impl MortarNode {
                 all.push(Covered { nodes: *nodes, at, length, along, pieces });
             }
         }
-        all
+        if is_covered { all } else { SmallVec::new() }
     }
 
     /// Gap, position along the opposite surface and stretch. Where nothing is opposite, the gap is the distance of the two
@@ -170,7 +190,7 @@ impl CoupledKinematics for MortarNode {
 
     fn motion(&self, from: LocalDisplacements<'_>, to: LocalDisplacements<'_>) -> Vector {
         let ((gap, place, stretch), (last_gap, last_place, last_stretch)) = (self.values(from), self.values(to));
-        let way = self.opposite.way(0, place, last_place);
+        let way = self.opposite.way(self.chain(to), place, last_place);
         [0.5 * (stretch + last_stretch) * way, last_gap - gap, 0.0]
     }
 
@@ -209,9 +229,26 @@ impl CoupledKinematics for MortarNode {
         }
     }
 
+    fn distance_to_end(&self, displacement: LocalDisplacements<'_>) -> f64 {
+        let (own, chain) = (self.places.len(), self.chain(displacement));
+        let mut most = f64::NEG_INFINITY;
+        for nodes in &self.faces {
+            let [first, last] = nodes.map(|node| self.position(displacement, node));
+            let vector = difference(last, first);
+            let length = product(vector, vector).sqrt();
+            for face in self.opposite.faces.iter().filter(|face| face.chain == chain) {
+                let ends = face.nodes.map(|node| difference(self.position(displacement, own + node), first));
+                let [s_first, s_last] = ends.map(|end| product(vector, end) / length);
+                if s_last < s_first {
+                    most = most.max(s_first.min(length) - s_last.max(0.0) - LAST_COVERED * length);
+                }
+            }
+        }
+        most
+    }
+
     fn clearance(&self, displacement: LocalDisplacements<'_>) -> Option<(f64, f64)> {
         // Points of faces move no farther than their nodes, and the two surfaces together by √2 at most.
         Some((self.distance(displacement), SQRT_2))
     }
 }
-

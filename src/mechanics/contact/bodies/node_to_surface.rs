@@ -228,7 +228,8 @@ impl NodeToSurface {
         let Closest { piece, parameter } = self.closest(displacement);
         let points = self.points(displacement, &piece);
         let [values, slopes] = basis(parameter, ends(&piece));
-        let (from, slope) = (difference(self.own(displacement), combined(&values, &points)), combined(&slopes, &points));
+        let (from, slope) =
+            (difference(self.own(displacement), combined(&values, &points)), combined(&slopes, &points));
         let size = product(slope, slope).sqrt();
         let along = self.along::<f64>(&piece);
         let sum = |weights: &[f64; 4]| weights.iter().zip(&along).map(|(weight, place)| weight * place).sum::<f64>();
@@ -331,6 +332,21 @@ impl CoupledKinematics for NodeToSurface {
                 add(row, column, force[1] * gap.hessian[k][l] + force[0] * along);
             }
         }
+    }
+
+    fn distance_to_end(&self, displacement: LocalDisplacements<'_>) -> f64 {
+        let Closest { piece, parameter } = self.closest(displacement);
+        let surface = &self.opposite;
+        let face = surface.faces[piece.face];
+        let chain = surface.chains[face.chain];
+        if chain.period.is_some() {
+            return f64::INFINITY;
+        }
+        // The surface goes on straight for half a face, so that a node may touch its very end.
+        let whole = surface.faces[chain.first..chain.first + chain.count].last().map_or(0.0, |last| last.along[1]);
+        let length = face.along[1] - face.along[0];
+        let place = face.along[0] + parameter * length;
+        (place.min(whole - place) + 0.5 * length).max(-length)
     }
 
     fn clearance(&self, displacement: LocalDisplacements<'_>) -> Option<(f64, f64)> {

@@ -24,6 +24,8 @@ pub struct SurfaceFace {
     pub along: [f64; 2],
     /// Index of the chain.
     pub chain: usize,
+    /// Whether the chain ends at the first and at the last node.
+    pub ends: [bool; 2],
 }
 
 /// Faces that follow one another.
@@ -43,6 +45,9 @@ pub enum SurfaceError {
     /// Index of the node, by number of the structure.
     #[error("more than one face begins, or ends, at a node")]
     Branches(usize),
+    /// Numbers of the two nodes of a face.
+    #[error("a face has no length")]
+    NoLength([usize; 2]),
 }
 
 impl OppositeSurface {
@@ -50,7 +55,7 @@ impl OppositeSurface {
     /// Chains are in the order of their first faces.
     ///
     /// # Errors
-    /// Where two faces begin or two end at one node.
+    /// Where two faces begin or two end at one node, or a face has no length.
     pub fn new(faces: &[[usize; 2]], place: impl Fn(usize) -> PlaneVector) -> Result<Self, SurfaceError> {
         let mut beginning: HashMap<usize, usize> = HashMap::new();
         let mut ending: HashMap<usize, usize> = HashMap::new();
@@ -87,7 +92,15 @@ impl OppositeSurface {
                 });
                 let vector = difference(surface.places[nodes[1]], surface.places[nodes[0]]);
                 let end = along + product(vector, vector).sqrt();
-                surface.faces.push(SurfaceFace { nodes, along: [along, end], chain: surface.chains.len() });
+                if end <= along {
+                    return Err(SurfaceError::NoLength(faces[face]));
+                }
+                surface.faces.push(SurfaceFace {
+                    nodes,
+                    along: [along, end],
+                    chain: surface.chains.len(),
+                    ends: [false; 2],
+                });
                 along = end;
                 match beginning.get(&faces[face][1]) {
                     Some(next) if *next == first => break Some(along),
@@ -95,6 +108,12 @@ impl OppositeSurface {
                     None => break None,
                 }
             };
+            if period.is_none() {
+                surface.faces[chain.first].ends[0] = true;
+                if let Some(last) = surface.faces.last_mut() {
+                    last.ends[1] = true;
+                }
+            }
             surface.chains.push(Chain { count: surface.faces.len() - chain.first, period, ..chain });
         }
         Ok(surface)

@@ -109,7 +109,7 @@ fn of_length(face: &Covered, weight: f64, local: &mut Local) {
 /// The second derivatives of the moments of a piece by the positions of its nodes and the face's.
 fn of_piece(face: &Covered, piece: &Piece, weights: &[f64], local: &mut Local) {
     let variables = std::array::from_fn(|k| WithHessian::<5>::variable(piece.values[k], k));
-    let moments = moments(&variables, piece.along, face.at.from);
+    let moments = moments(&variables, piece.along, piece.goes_on, face.at.from);
     let mut sum = WithHessian::<5>::constant(0.0);
     for (moment, weight) in moments.iter().zip(weights) {
         sum = sum + moment.times(*weight);

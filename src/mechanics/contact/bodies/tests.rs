@@ -97,7 +97,8 @@ fn curvatures_are_the_derivatives_of_the_rows() {
                 columns(contact.as_ref(), &moved)
             });
             for row in 0..count {
-                let slope: f64 = (0..2).map(|k| force[k] * (rows[1][row][k] - rows[0][row][k])).sum::<f64>() / (2.0 * step);
+                let slope: f64 =
+                    (0..2).map(|k| force[k] * (rows[1][row][k] - rows[0][row][k])).sum::<f64>() / (2.0 * step);
                 let found = curvature[count * row + column];
                 assert!((slope - found).abs() <= 2e-7 * (1.0 + found.abs()), "{name}, {row} {column}: {found} {slope}");
             }
@@ -120,7 +121,8 @@ fn both_bodies_carry_opposite_forces() {
         };
         for row in 0..2 {
             let force: [f64; 2] = [0, 1].map(|axis| (0..count).map(|k| rows[2 * k + axis][row]).sum());
-            let moment: f64 = (0..count).map(|k| place(k)[0] * rows[2 * k + 1][row] - place(k)[1] * rows[2 * k][row]).sum();
+            let moment: f64 =
+                (0..count).map(|k| place(k)[0] * rows[2 * k + 1][row] - place(k)[1] * rows[2 * k][row]).sum();
             assert!(force[0].abs().max(force[1].abs()).max(moment.abs()) <= 1e-12, "{name}: {force:?} {moment}");
         }
         let (angle, start) = (0.8_f64, contact.place(&|k| u[k]));
@@ -139,7 +141,8 @@ fn both_bodies_carry_opposite_forces() {
 /// A flat surface at a distance: the gap is the distance, the motion that of the node.
 #[test]
 fn flat_surfaces_have_their_distance_and_their_slip() {
-    let place = |node: usize| [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.7, 0.5], [1.2, 0.5], [0.4, 0.5], [-0.9, 0.5]][node];
+    let place =
+        |node: usize| [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.7, 0.5], [1.2, 0.5], [0.4, 0.5], [-0.9, 0.5]][node];
     let surface = OppositeSurface::new(&[[3, 4], [4, 5], [5, 6]], place).expect("a surface");
     let surface = Arc::new(surface);
     let contacts: [Arc<dyn CoupledKinematics>; 2] = [

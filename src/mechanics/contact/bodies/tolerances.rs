@@ -4,6 +4,10 @@
 /// of the mean would be larger than 1e-6.
 pub(super) const LEAST_COVERED: f64 = 1e-8;
 
+/// The part of a face that is still covered where a node counts as at the end of the surface that it touches: above
+/// [`LEAST_COVERED`], so that the end is found before the contact is lost.
+pub(super) const LAST_COVERED: f64 = 1e-6;
+
 /// Newton's method for the closest point ends at a correction below this (in lengths of faces).
 pub(super) const CLOSEST_POINT: f64 = 1e-15;
 

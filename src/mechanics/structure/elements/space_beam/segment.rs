@@ -22,10 +22,10 @@
 //! The frames halfway and between the ends come from sums and products of the nodes' quaternions, which count turns by
 //! twos: the ends of a segment may turn against each other by any angle below a full turn.
 
-use crate::mechanics::rotation::{polynomial, quaternion, sine_coefficient, sine_of_root};
 use crate::algebra::differential::{
     Differential, DifferentialQuaternion, WithGradient, WithHessian, added, cross, dot, scaled,
 };
+use crate::mechanics::rotation::{polynomial, quaternion, sine_coefficient, sine_of_root};
 use nalgebra::{Matrix3, Quaternion, Vector3};
 
 /// Stiffnesses of the cross-section of a beam in space.

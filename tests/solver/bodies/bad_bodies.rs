@@ -1,0 +1,106 @@
+//! Contacts of bodies that make none, each refused with its place.
+
+use super::{Sheet, pair, support};
+use serde_json::{Value, json};
+
+fn whole() -> Value {
+    let lower = Sheet::new("l", [3, 1], |x, y| [x, y]);
+    let upper = Sheet::new("u", [2, 1], |x, y| [x, 1.0 + y]);
+    let mut model = pair(&lower, &upper, &json!({"kind": "linear_elastic", "young": 1, "poisson": 0.3}), 0.3, false);
+    support(&mut model, &lower.lowest(), &["x", "y"]);
+    support(&mut model, &upper.highest(), &["x"]);
+    model["stages"] = json!([{"name": "press", "tractions": {"top": [0, -1]}, "until": {"load_above": 0.01}}]);
+    json!({"model": model})
+}
+
+fn refused(change: impl FnOnce(&mut Value), pointer: &str, words: &[&str]) {
+    let mut posted = whole();
+    change(&mut posted["model"]);
+    let text = posted.to_string();
+    let errors = match arcslip::model::decode::decode(text.as_bytes()) {
+        Err(errors) => errors,
+        Ok(request) => arcslip::continuation::scene::Scene::new(&request).map(|_| ()).expect_err(pointer),
+    };
+    let found = errors.0.iter().find(|error| error.pointer.starts_with(pointer));
+    let found = found.unwrap_or_else(|| panic!("nothing at {pointer}: {errors}"));
+    for word in words {
+        assert!(found.detail.contains(word), "{}", found.detail);
+    }
+}
+
+#[test]
+fn what_makes_no_contact_of_bodies_is_refused_with_its_place() {
+    assert!(arcslip::model::decode::decode(whole().to_string().as_bytes()).is_ok());
+    let contact = "/model/contacts/0";
+    refused(|model| model["contacts"][0]["against"] = json!("belov"), &format!("{contact}/against"), &["below"]);
+    refused(|model| model["contacts"][0]["surface"] = json!("abov"), &format!("{contact}/surface"), &["above"]);
+    refused(|model| model["contacts"][0]["obstacle"] = json!("below"), contact, &["`obstacle` and `against`"]);
+    refused(
+        |model| model["contacts"][0]["discretisation"] = json!("penalty"),
+        &format!("{contact}/discretisation"),
+        &["mortar", "node_to_surface"],
+    );
+    refused(
+        |model| {
+            model["obstacles"] = json!({"below": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}});
+        },
+        &format!("{contact}/against"),
+        &["obstacle has the name"],
+    );
+    refused(|model| model["contacts"][0]["against"] = json!("above"), &format!("{contact}/against"), &["itself"]);
+    // The upper block begins inside the lower one.
+    refused(
+        |model| {
+            for row in 0..2 {
+                for column in 0..3 {
+                    model["nodes"][format!("u{column}_{row}")][1] = json!(0.7 + f64::from(row));
+                }
+            }
+        },
+        &format!("{contact}/node"),
+        &["behind", "gap -0.3"],
+    );
+    refused(
+        |model| {
+            let more = json!(["l1_1", "l1_0"]);
+            model["surfaces"]["below"]["faces"].as_array_mut().expect("faces").push(more);
+        },
+        "/model/surfaces/below/faces/3",
+        &["inside the body"],
+    );
+    // Two nodes at one place.
+    refused(
+        |model| model["nodes"]["u1_0"] = json!([0.0, 1.0]),
+        &format!("{contact}/surface"),
+        &["no length", "`u1_0`"],
+    );
+    refused(
+        |model| {
+            model["contacts"][0] = json!({"node": "u1_0", "against": "below"});
+        },
+        &format!("{contact}/node"),
+        &["node_to_surface"],
+    );
+    refused(
+        |model| {
+            model["contacts"][0] = json!({"node": "u1_1", "surface": "above", "against": "below"});
+        },
+        &format!("{contact}/node"),
+        &["no node of"],
+    );
+    refused(
+        |model| {
+            for element in model["elements"].as_array_mut().expect("elements") {
+                element["plane"] = json!("axisymmetric");
+            }
+        },
+        contact,
+        &["revolution"],
+    );
+    refused(|model| model["contacts"][0]["friction"] = json!(-0.1), &format!("{contact}/friction"), &["0 or more"]);
+    refused(
+        |model| model["stages"][0]["pressures"] = json!({"belov": 1}),
+        "/model/stages/0/pressures/belov",
+        &["below"],
+    );
+}

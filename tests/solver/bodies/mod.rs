@@ -1,0 +1,89 @@
+//! Bodies that touch each other.
+
+mod arches;
+mod bad_bodies;
+mod blocks;
+mod hertz;
+mod random_pairs;
+
+use serde_json::{Map, Value, json};
+
+/// A mapped mesh of quadrilaterals, its parts named with a prefix.
+pub struct Sheet {
+    pub nodes: Map<String, Value>,
+    pub elements: Vec<Value>,
+    prefix: String,
+    columns: usize,
+    rows: usize,
+}
+
+impl Sheet {
+    /// `place` maps the unit square; the columns follow the first direction.
+    pub fn new(prefix: &str, [columns, rows]: [usize; 2], place: impl Fn(f64, f64) -> [f64; 2]) -> Self {
+        let mut sheet = Self { nodes: Map::new(), elements: Vec::new(), prefix: prefix.to_owned(), columns, rows };
+        for row in 0..=rows {
+            for column in 0..=columns {
+                let at = place(column as f64 / columns as f64, row as f64 / rows as f64);
+                sheet.nodes.insert(sheet.name(column, row), json!(at));
+            }
+        }
+        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+            let corners = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(right, up)| sheet.name(column + right, row + up));
+            sheet.elements.push(json!({
+                "kind": "quadrilateral4", "nodes": corners, "material": "matter", "plane": "strain"
+            }));
+        }
+        sheet
+    }
+
+    pub fn name(&self, column: usize, row: usize) -> String {
+        format!("{}{column}_{row}", self.prefix)
+    }
+
+    /// The nodes of the lowest and of the highest row.
+    pub fn lowest(&self) -> Vec<String> {
+        (0..=self.columns).map(|column| self.name(column, 0)).collect()
+    }
+
+    pub fn highest(&self) -> Vec<String> {
+        (0..=self.columns).map(|column| self.name(column, self.rows)).collect()
+    }
+}
+
+/// Faces between nodes in a row.
+pub fn faces(nodes: &[String]) -> Value {
+    json!({"faces": nodes.windows(2).map(<[String]>::to_vec).collect::<Vec<_>>()})
+}
+
+/// A model of two sheets; the upper surface of the first touches the lower surface of the second, which carries the
+/// multipliers unless `swapped`.
+pub fn pair(lower: &Sheet, upper: &Sheet, material: &Value, friction: f64, swapped: bool) -> Value {
+    let (mut nodes, mut elements) = (lower.nodes.clone(), lower.elements.clone());
+    nodes.extend(upper.nodes.clone());
+    elements.extend(upper.elements.clone());
+    let (surface, against) = if swapped { ("below", "above") } else { ("above", "below") };
+    json!({
+        "dimension": 2, "nodes": nodes, "elements": elements, "supports": {},
+        "materials": {"matter": material},
+        "surfaces": {
+            "below": faces(&lower.highest()), "above": faces(&upper.lowest()), "top": faces(&upper.highest()),
+        },
+        "contacts": [{"surface": surface, "against": against, "friction": friction}],
+    })
+}
+
+/// Adds supports of nodes.
+pub fn support(model: &mut Value, nodes: &[String], components: &[&str]) {
+    for node in nodes {
+        let held = model["supports"].get(node).cloned().unwrap_or(json!([]));
+        let mut held: Vec<Value> = held.as_array().cloned().unwrap_or_default();
+        held.extend(components.iter().map(|component| json!(component)));
+        held.dedup();
+        model["supports"][node] = json!(held);
+    }
+}
+
+/// Prescribed displacements of nodes.
+pub fn moved(nodes: &[String], motion: [f64; 2]) -> Value {
+    nodes.iter().map(|node| (node.clone(), json!(motion))).collect::<Map<_, _>>().into()
+}
