@@ -154,6 +154,26 @@ class Building(unittest.TestCase):
         for wrong in (lambda: model.surface("both"), lambda: model.contact(0, "floor", surface="top"), lambda: model.contact(0)):
             self.assertRaises(ValueError, wrong)
 
+    def test_bodies_touch_each_other(self):
+        model = arcslip.Model(2)
+        for name, place in {"a": (0, 0), "b": (1, 0), "tip": (0, 1)}.items():
+            model.node(name, *place)
+        model.bar("a", "b", 1.0)
+        model.surface("string", [["a", "b"]])
+        model.surface("other", [["b", "a"]])
+        model.contact(surface="other", against="string", friction=0.2)
+        model.contact("tip", against="string", discretisation="node_to_surface")
+        model.contact("a", surface="string", against="other")
+        self.assertEqual(model.request()["model"]["contacts"], [
+            {"surface": "other", "against": "string", "friction": 0.2},
+            {"node": "tip", "against": "string", "discretisation": "node_to_surface", "friction": 0.0},
+            {"node": "a", "surface": "string", "against": "other", "friction": 0.0},
+        ])
+        with self.assertRaisesRegex(ValueError, "with an obstacle, or against"):
+            model.contact("tip", "floor", against="string")
+        with self.assertRaisesRegex(ValueError, "with an obstacle, or against"):
+            model.contact("tip")
+
     def test_a_mesh_file_goes_into_the_request(self):
         with tempfile.TemporaryDirectory() as folder:
             text, binary = pathlib.Path(folder) / "a.inp", pathlib.Path(folder) / "b.msh"

@@ -118,11 +118,14 @@ fn obstacle() -> impl Strategy<Value = Obstacle> {
 }
 
 fn contact() -> impl Strategy<Value = Contact> {
-    (name(), name(), number()).prop_map(|(node, obstacle, friction)| Contact {
-        node,
-        surface: None,
-        obstacle,
-        friction,
+    let discretisation = one_of([ContactDiscretisation::Mortar, ContactDiscretisation::NodeToSurface]);
+    let body = of((name(), of(discretisation)));
+    (name(), name(), number(), body).prop_map(|(node, other, friction, body)| match body {
+        // An obstacle without a name is none.
+        None => Contact::new(node, format!("obstacle {other}"), friction),
+        Some((surface, discretisation)) => {
+            Contact { node, discretisation, ..Contact::between(surface, other, friction) }
+        }
     })
 }
 

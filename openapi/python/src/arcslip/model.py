@@ -238,16 +238,33 @@ class Model:
         return name
 
     def contact(
-        self, node: Optional[Node] = None, obstacle: str = "", friction: float = 0.0, *, surface: Optional[str] = None
+        self,
+        node: Optional[Node] = None,
+        obstacle: str = "",
+        friction: float = 0.0,
+        *,
+        surface: Optional[str] = None,
+        against: Optional[str] = None,
+        discretisation: Optional[str] = None,
     ) -> int:
-        """Adds a contact of a node, of the nodes of a set (`"@name"`), or of a surface with an obstacle; returns its
-        place among the contacts."""
-        if node is not None and surface is not None:
+        """Adds a contact of a node, of the nodes of a set (`"@name"`), or of a surface, with an obstacle or `against` the
+        surface of another body (`discretisation`: "mortar" or "node_to_surface"); returns its place among the contacts."""
+        if against is None and node is not None and surface is not None:
             raise ValueError("a contact has either a node or a surface")
-        if not obstacle:
-            raise ValueError("the name of an obstacle is missing")
-        own = {"node": self.node_name(node)} if surface is None else {"surface": surface}  # type: ignore[arg-type]
-        contact = {**own, "obstacle": obstacle, "friction": plain(friction)}
+        if bool(obstacle) == (against is not None):
+            raise ValueError("a contact is with an obstacle, or against a surface")
+        contact: Dict[str, Any] = {}
+        if node is not None or surface is None:
+            contact["node"] = self.node_name(node)  # type: ignore[arg-type]
+        if surface is not None:
+            contact["surface"] = surface
+        if against is not None:
+            contact["against"] = against
+            if discretisation is not None:
+                contact["discretisation"] = discretisation
+        else:
+            contact["obstacle"] = obstacle
+        contact["friction"] = plain(friction)
         self._contacts.append(contact)
         return len(self._contacts) - 1
 

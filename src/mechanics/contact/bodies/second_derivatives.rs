@@ -5,6 +5,7 @@ use crate::algebra::differential::{Differential, WithHessian};
 use crate::mechanics::contact::bodies::covered_face::{Covered, Met, Piece, VARIABLES, each_gradient, nodal_gradients};
 use crate::mechanics::contact::bodies::face_moments::{MOMENTS, NodalValues, OF_FACE, moments, nodal_values};
 use crate::mechanics::contact::bodies::turned_left;
+use itertools::Itertools;
 use smallvec::SmallVec;
 
 /// A square matrix over the degrees of freedom that were met.
@@ -123,11 +124,9 @@ fn of_piece(face: &Covered, piece: &Piece, weights: &[f64], local: &mut Local) {
     }
     for (first, values) in rows.iter().zip(&sum.hessian) {
         for (second, factor) in rows.iter().zip(values) {
-            for (row, left) in first {
-                for (column, right) in second {
-                    for k in 0..2 {
-                        (0..2).for_each(|l| local.add(row + k, column + l, factor * left[k] * right[l]));
-                    }
+            for ((row, left), (column, right)) in first.iter().cartesian_product(second) {
+                for ((k, left), (l, right)) in left.iter().enumerate().cartesian_product(right.iter().enumerate()) {
+                    local.add(row + k, column + l, factor * left * right);
                 }
             }
         }

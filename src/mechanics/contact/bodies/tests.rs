@@ -119,10 +119,10 @@ fn both_bodies_carry_opposite_forces() {
             let shift = if name.contains("a face covered") && contact.nodes()[k] < 3 { -0.2 } else { shift };
             [x + shift + u[2 * k], y + u[2 * k + 1]]
         };
-        for row in 0..2 {
-            let force: [f64; 2] = [0, 1].map(|axis| (0..count).map(|k| rows[2 * k + axis][row]).sum());
-            let moment: f64 =
-                (0..count).map(|k| place(k)[0] * rows[2 * k + 1][row] - place(k)[1] * rows[2 * k][row]).sum();
+        for which in [0, 1] {
+            let row = |freedom: usize| rows[freedom][which];
+            let force: [f64; 2] = [0, 1].map(|axis| (0..count).map(|k| row(2 * k + axis)).sum());
+            let moment: f64 = (0..count).map(|k| place(k)[0] * row(2 * k + 1) - place(k)[1] * row(2 * k)).sum();
             assert!(force[0].abs().max(force[1].abs()).max(moment.abs()) <= 1e-12, "{name}: {force:?} {moment}");
         }
         let (angle, start) = (0.8_f64, contact.place(&|k| u[k]));

@@ -90,7 +90,7 @@ function expanded(given) {
     membersOfName(given, name).map((node) => [node, value])));
   const stageOfNodes = (stage) => (isObject(stage) ? { ...stage, forces: byNode(stage.forces), moments: byNode(stage.moments),
     displacements: byNode(stage.displacements) } : stage);
-  const contactsOf = (item) => membersOfName(given, item?.surface === undefined ? item?.node : `@${item.surface}`)
+  const contactsOf = (item) => membersOfName(given, item?.surface === undefined || item.node ? item?.node : `@${item.surface}`)
     .map((node) => ({ ...item, node }));
   return { ...given, supports: byNode(given.supports), contacts: listOf(given.contacts).flatMap(contactsOf),
     stages: listOf(given.stages).map(stageOfNodes) };
@@ -102,12 +102,17 @@ function parts(reading, given, nodes) {
   const elements = listOf(given.elements).filter((item, number) =>
     reading.isRight(`Element ${number}`, elementProblem(reading, item, missing)));
   const contacts = listOf(given.contacts).filter((item, number) => reading.isRight(`Contact ${number}`,
-    missing(item?.node) ?? (Object.hasOwn(obstacles, item.obstacle) ? null : `there is no obstacle “${item.obstacle}”`)));
+    missing(item?.node) ?? counterpartProblem(item, obstacles, given.surfaces)));
   const supports = reading.keep(given.supports, "The support of", (held, name) => missing(name)
     ?? (listOf(held).length && held.every((one) => reading.hasComponent(one)) ? null
       : "it has to list components, such as \"x\""));
   return { obstacles, elements, contacts, supports, stages: listOf(given.stages).map((stage, number) =>
     stageOf(reading, stage, number, { missing, obstacles })) };
+}
+
+function counterpartProblem({ obstacle, against }, obstacles, surfaces) {
+  if (against !== undefined) return Object.hasOwn(surfaces ?? {}, against) ? null : `there is no surface “${against}”`;
+  return Object.hasOwn(obstacles, obstacle) ? null : `there is no obstacle “${obstacle}”`;
 }
 
 function obstacleProblem(reading, obstacle) {

@@ -18,7 +18,7 @@ const ALWAYS = ["stage", "load_factor", "arc_length"];
 /** Whether a model has a mesh, or names of sets and surfaces where nodes are drawn. */
 const namesParts = (model) => Boolean(model.mesh)
   || Object.keys(model.supports ?? {}).some((name) => name.startsWith("@"))
-  || (model.contacts ?? []).some(({ node, surface }) => surface || node?.startsWith("@"));
+  || (model.contacts ?? []).some(({ node, surface }) => (surface && !node) || node?.startsWith("@"));
 
 export class PathData {
   constructor(id) {

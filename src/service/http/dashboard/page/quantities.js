@@ -60,6 +60,9 @@ export function ofDisplacement(name) {
     ? { node: key, component: Number(steps[0]) } : null;
 }
 
+/** The name of what a contact of a model touches: an obstacle, or the surface of another body. */
+export const counterpart = ({ obstacle, against }) => against ?? obstacle;
+
 /** What a job records of each kind: nodes and supports by name, elements and contacts as their places in the model, in the
  *  order in which they stand in an increment; null where that order is not the same in each. */
 export function recordedParts({ model, analysis }) {
@@ -79,7 +82,7 @@ export function recordedParts({ model, analysis }) {
     elements: chosen("elements", elements, (one) =>
       (typeof one === "number" ? one : elements.findIndex(({ name }) => name === one))),
     contacts: chosen("contacts", contacts, (one) =>
-      contacts.findIndex(({ node, obstacle }) => node === one.node && obstacle === one.obstacle)),
+      contacts.findIndex((item) => item.node === one.node && counterpart(item) === one.obstacle)),
   };
 }
 

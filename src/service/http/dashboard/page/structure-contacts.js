@@ -2,6 +2,7 @@
 
 import { frame, vector } from "./geometry.js";
 import { fromSheet } from "./plot-style.js";
+import { counterpart } from "./quantities.js";
 import { contactWords } from "./structure-nodes.js";
 
 const { plus, times, length, unit } = vector;
@@ -17,7 +18,7 @@ export class ContactDrawing {
   /** `most`: the reaction whose arrow has its full length. */
   constructor(model, increment, extent, traces, { now, moved, most, units, detail }) {
     Object.assign(this, { model, extent, traces, now, moved, most, units, detail });
-    this.friction = new Map((model.contacts ?? []).map((item) => [`${item.node}\n${item.obstacle}`, item.friction ?? 0]));
+    this.friction = new Map((model.contacts ?? []).map((item) => [`${item.node}\n${counterpart(item)}`, item.friction ?? 0]));
     const { contacts } = increment;
     const drawn = contacts.filter(({ node }) => now.has(node));
     const closed = drawn.filter(({ status }) => status !== "free");
@@ -39,8 +40,10 @@ export class ContactDrawing {
     return this.friction.get(`${node}\n${obstacle}`) ?? 0;
   }
 
-  frame({ node, obstacle }) {
-    return frame(this.model.obstacles[obstacle], this.now.get(node), this.moved.get(obstacle));
+  frame(contact) {
+    const { node, obstacle } = contact;
+    const touched = this.model.obstacles?.[obstacle];
+    return touched ? frame(touched, this.now.get(node), this.moved.get(obstacle)) : frameOfReaction(contact);
   }
 
   /** A vector of its components along the tangents. */
@@ -77,6 +80,13 @@ export class ContactDrawing {
     const place = this.now.get(contact.node);
     this.traces.arrow("slip direction", place, plus(place, unit(slip), SLIP * this.extent.size), fromSheet("--slip"));
   }
+}
+
+/** The frame of a contact of bodies, whose reaction has known parts along it; the tangent is the normal turned clockwise. */
+function frameOfReaction({ reaction: [x, y], normal_reaction: across, tangential_reaction: [along] }) {
+  const square = across * across + along * along;
+  const normal = square > 0 ? [(x * across - y * along) / square, (x * along + y * across) / square] : [0, 0];
+  return { normal, tangents: [[normal[1], -normal[0]]] };
 }
 
 function cone(place, normal, tangents, coefficient, size) {
