@@ -124,10 +124,12 @@ impl Table {
         let named: Option<HashSet<(&str, &str)>> =
             named.map(|named| named.iter().map(|one| (one.node.as_str(), one.obstacle.as_str())).collect());
         let contacts = model.contacts.iter().filter(|contact| {
-            named.as_ref().is_none_or(|named| named.contains(&(contact.node.as_str(), contact.obstacle.as_str())))
+            named.as_ref().is_none_or(|named| named.contains(&(contact.node.as_str(), contact.counterpart())))
         });
-        let columns =
-            |contact: &Contact| ContactColumns { node: contact.node.clone(), obstacle: contact.obstacle.clone() };
+        let columns = |contact: &Contact| ContactColumns {
+            node: contact.node.clone(),
+            obstacle: contact.counterpart().to_owned(),
+        };
         let element = |place: usize| ElementColumns {
             place: place as u64,
             label: element_label(model, place),

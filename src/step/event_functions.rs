@@ -171,6 +171,13 @@ impl EventFunction {
     /// The derivative by arc length; `None` for quantities that are themselves rates, and for [`Self::Facet`].
     pub fn slope(self, loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate) -> Option<f64> {
         match self {
+            // Past the end of a surface the distance is a bound that says nothing of its change.
+            Self::Gap(contact)
+                if contact_jacobian::beyond_end(loading.structure, &loading.contacts[contact], &state.displacement)
+                    .is_some() =>
+            {
+                Some(0.0)
+            }
             Self::Gap(contact) => {
                 Some(dot(&loading.frame(contact, state).normal, &loading.relative_rate(contact, state, rate)))
             }

@@ -5,8 +5,8 @@
 //! `a √(ℓ² + |d|² σ²)`, and an open gap needs no check until the path is long enough to close the gap.
 
 use crate::check::measure::errors::{Errors, worse};
+use crate::check::measure::numbers::MeasuredVector;
 use crate::check::measure::posted::{Posted, PostedContact, PostedLoading};
-use crate::check::measure::vector::MeasuredVector;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 

@@ -12,8 +12,8 @@
 //! The integrals are taken numerically, the derivatives of `W` by numbers that carry them. At a release the rotation of
 //! the beam's end is the one without a moment.
 
-use crate::check::measure::dual_number::DualNumber;
-use crate::check::measure::vector::{MeasuredVector, padded};
+use crate::check::measure::numbers::DualNumber;
+use crate::check::measure::numbers::{MeasuredVector, padded};
 use crate::model::request::{BendingStiffness, Element as Posted, Model};
 
 /// Error of a difference of two rounded numbers that were computed from rounded numbers, in units of the machine

@@ -2,14 +2,16 @@
 //! projected nodes and the mass matrix of the covered part, the nearest point of a smoothed surface by sampling and
 //! bisection; derivatives by dual numbers, one degree of freedom at a time.
 
-use crate::check::measure::dual_number::DualNumber;
+use crate::check::measure::numbers::DualNumber;
+use crate::check::measure::numbers::{MeasuredVector, largest, padded};
 use crate::check::measure::obstacles::MeasuredFrame;
-use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::model::request::{Contact, ContactDiscretisation, Element, Model};
 use std::collections::HashMap;
 
 /// Parts of a face that are covered over less than this part of its length count as not covered.
 const COVERED: f64 = 1e-8;
+/// Faces that are behind by more than this part of the own face belong to the far side of a body.
+const FAR_BEHIND: f64 = 0.5;
 /// Samples on each face when a nearest point is sought, and bisections from the best of them.
 const SAMPLES: usize = 16;
 const BISECTIONS: usize = 60;
@@ -18,8 +20,8 @@ const BISECTIONS: usize = 60;
 const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
-type Number = DualNumber<1>;
-type Point = [Number; 2];
+type PlaneNumber = DualNumber<1>;
+type NumberPair = [PlaneNumber; 2];
 
 /// A contact of a node with a surface.
 #[derive(Debug, Clone)]
@@ -43,7 +45,7 @@ struct OppositeFace {
     /// Faces before and after, as indices.
     beside: [Option<usize>; 2],
     period: Option<f64>,
-    /// Number of its chain: the index of the chain's first face.
+    /// PlaneNumber of its chain: the index of the chain's first face.
     chain: usize,
 }
 
@@ -61,7 +63,7 @@ pub(super) struct BodyState {
 }
 
 /// What of the opposite surface is in front of a node.
-struct Found {
+struct OppositePart {
     /// The faces, as indices; the one with the nearest point of a smoothed surface.
     faces: Vec<usize>,
     /// Parameter of the nearest point, and slope there of the product that vanishes.
@@ -70,10 +72,10 @@ struct Found {
 }
 
 /// Gap, position along the opposite surface, stretch.
-struct Values {
-    gap: Number,
-    place: Number,
-    stretch: Number,
+struct MeasuredGap {
+    gap: PlaneNumber,
+    place: PlaneNumber,
+    stretch: PlaneNumber,
     period: Option<f64>,
 }
 
@@ -169,8 +171,9 @@ impl MeasuredBody {
             numbers.chain([&node]).filter_map(|node| Some((*node, padded(model.nodes.get_index(*node)?.1)))).collect();
         let reach = places.values().map(largest).fold(0.0, f64::max);
         let mut body = Self { faces, node, opposite, places, overlap: 0.0, reach };
-        let undeformed = |node: usize| [0, 1].map(|k| Number::constant(body.place(node)[k]));
-        body.overlap = body.values(&body.found(&undeformed), &undeformed).gap.0.min(0.0);
+        let still = vec![MeasuredVector::zeros(); model.nodes.len()];
+        // Past the end of the surface there is no contact yet.
+        body.overlap = if body.open_gap(&still) > 0.0 { 0.0 } else { body.gap(&still).min(0.0) };
         Some(body)
     }
 
@@ -181,7 +184,7 @@ impl MeasuredBody {
     /// The contact at displacements.
     pub fn state(&self, displacements: &[MeasuredVector]) -> BodyState {
         let position = |node: usize| self.place(node) + displacements[node];
-        let still = |node: usize| [0, 1].map(|k| Number::constant(position(node)[k]));
+        let still = |node: usize| [0, 1].map(|k| PlaneNumber::constant(position(node)[k]));
         let found = self.found(&still);
         let at_rest = self.values(&found, &still);
         let own: Vec<usize> = self.faces.iter().flatten().copied().chain([self.node]).collect();
@@ -196,7 +199,7 @@ impl MeasuredBody {
                 let values = self.values(&found, &|other| {
                     let mut point = still(other);
                     if other == node {
-                        point[component] = Number::variable(point[component].0, 0);
+                        point[component] = PlaneNumber::variable(point[component].0, 0);
                     }
                     point
                 });
@@ -207,14 +210,46 @@ impl MeasuredBody {
                 rows.push((node, row, own.contains(&node)));
             }
         }
-        let Values { gap, place, stretch, period } = at_rest;
+        let MeasuredGap { gap, place, stretch, period } = at_rest;
         BodyState { gap: gap.0 - self.overlap, place: place.0, stretch: stretch.0, period, rows }
     }
 
     /// The gap at displacements.
     pub fn gap(&self, displacements: &[MeasuredVector]) -> f64 {
-        let still = |node: usize| [0, 1].map(|k| Number::constant((self.place(node) + displacements[node])[k]));
+        let still = |node: usize| [0, 1].map(|k| PlaneNumber::constant((self.place(node) + displacements[node])[k]));
         self.values(&self.found(&still), &still).gap.0 - self.overlap
+    }
+
+    /// The gap of a contact without reaction: of a node beyond the end of a smoothed surface it is the distance.
+    pub fn open_gap(&self, displacements: &[MeasuredVector]) -> f64 {
+        let position = |node: usize| self.place(node) + displacements[node];
+        let still = |node: usize| [0, 1].map(|k| PlaneNumber::constant(position(node)[k]));
+        let found = if self.faces.is_empty() { self.nearest(&still) } else { return self.gap(displacements) };
+        let Some(face) = found.faces.first().map(|face| &self.opposite[*face]) else { return self.gap(displacements) };
+        let of_chain = self.opposite.iter().filter(|other| other.chain == face.chain);
+        let whole = of_chain.map(|other| other.along[1]).fold(0.0, f64::max);
+        // The surface goes on straight for half a face.
+        let allowed = 0.5 * (face.along[1] - face.along[0]);
+        if face.period.is_none() && self.parameter_left(face, &found, whole) < -allowed {
+            return self.distance_of(position(self.node), &position);
+        }
+        self.gap(displacements)
+    }
+
+    /// The coordinate by the parameter of the nearest point from the nearer end of the surface.
+    fn parameter_left(&self, face: &OppositeFace, found: &OppositePart, whole: f64) -> f64 {
+        let place = face.along[0] + found.place * (face.along[1] - face.along[0]);
+        place.min(whole - place)
+    }
+
+    /// The distance of a point from the opposite faces.
+    fn distance_of(&self, point: MeasuredVector, position: &dyn Fn(usize) -> MeasuredVector) -> f64 {
+        let from_line = |[first, last]: [usize; 2]| {
+            let (first, edge) = (position(first), position(last) - position(first));
+            let share = ((point - first).dot(&edge) / edge.norm_squared()).clamp(0.0, 1.0);
+            (point - first - edge * share).norm()
+        };
+        self.opposite.iter().map(|face| from_line(face.nodes)).fold(f64::INFINITY, f64::min)
     }
 
     /// The nodes that the shape of an opposite face depends on.
@@ -236,7 +271,7 @@ impl MeasuredBody {
     }
 
     /// What of the opposite surface is in front of the node.
-    fn found(&self, point: &dyn Fn(usize) -> Point) -> Found {
+    fn found(&self, point: &dyn Fn(usize) -> NumberPair) -> OppositePart {
         if self.faces.is_empty() {
             return self.nearest(point);
         }
@@ -247,7 +282,9 @@ impl MeasuredBody {
                 let (start, edge) = (point(*first), minus(point(*last), point(*first)));
                 let square = product(edge, edge).0;
                 let [high, low] = face.nodes.map(|node| product(minus(point(node), start), edge).0 / square);
-                if low >= high {
+                let left = [edge[1].times(-1.0), edge[0]];
+                let heights = face.nodes.map(|node| product(minus(point(node), start), left).0 / square);
+                if low >= high || heights[0].max(heights[1]) < -FAR_BEHIND {
                     continue;
                 }
                 found[0] |= high.min(1.0) - low.max(0.0) > COVERED;
@@ -262,11 +299,11 @@ impl MeasuredBody {
         let found: Vec<(usize, [bool; 2])> = of_chain.map(|face| (face, covers(&self.opposite[face]))).collect();
         let is_covered = found.iter().any(|(_, covers)| covers[0]);
         let faces = found.iter().filter(|(_, covers)| is_covered && covers[1]).map(|(face, _)| *face).collect();
-        Found { faces, place: 0.0, slope: 1.0 }
+        OppositePart { faces, place: 0.0, slope: 1.0 }
     }
 
     /// The chain of opposite faces that is nearest to the node.
-    fn nearest_chain(&self, point: &dyn Fn(usize) -> Point) -> usize {
+    fn nearest_chain(&self, point: &dyn Fn(usize) -> NumberPair) -> usize {
         let own = point(self.node);
         let distance = |face: &OppositeFace| {
             let [first, last] = face.nodes.map(point);
@@ -279,7 +316,7 @@ impl MeasuredBody {
         nearest.map_or(0, |face| face.chain)
     }
 
-    fn values(&self, found: &Found, point: &dyn Fn(usize) -> Point) -> Values {
+    fn values(&self, found: &OppositePart, point: &dyn Fn(usize) -> NumberPair) -> MeasuredGap {
         if self.faces.is_empty() { self.at_nearest(found, point) } else { self.mean(found, point) }
     }
 
@@ -305,8 +342,8 @@ impl MeasuredBody {
     }
 
     /// The mean over the faces at the node.
-    fn mean(&self, found: &Found, point: &dyn Fn(usize) -> Point) -> Values {
-        let zero = Number::constant(0.0);
+    fn mean(&self, found: &OppositePart, point: &dyn Fn(usize) -> NumberPair) -> MeasuredGap {
+        let zero = PlaneNumber::constant(0.0);
         let [mut weights, mut gaps, mut places, mut lengths, mut undeformed] = [zero; 5];
         let mut reference: Option<f64> = None;
         let mut period = None;
@@ -326,7 +363,8 @@ impl MeasuredBody {
                 // The last face goes on straight beyond an end of the surface.
                 let from = if face.beside[1].is_none() { zero } else { larger(low, zero) };
                 let to = if face.beside[0].is_none() { length } else { smaller(high, length) };
-                if high.0 <= low.0 || to.0 - from.0 <= COVERED * length.0 {
+                let behind = height_high.0.max(height_low.0) < -FAR_BEHIND * length.0;
+                if high.0 <= low.0 || behind || to.0 - from.0 <= COVERED * length.0 {
                     continue;
                 }
                 let origin = *reference.get_or_insert(face.along[0]);
@@ -338,8 +376,8 @@ impl MeasuredBody {
                     let share = s.minus(low).over(high.minus(low));
                     let height = height_low.plus(share.by(height_high.minus(height_low)));
                     let position =
-                        share.times(face.along[0] - face.along[1]).plus(Number::constant(face.along[1] + shift));
-                    let shape = [Number::constant(1.0).minus(s.over(length)), s.over(length)];
+                        share.times(face.along[0] - face.along[1]).plus(PlaneNumber::constant(face.along[1] + shift));
+                    let shape = [PlaneNumber::constant(1.0).minus(s.over(length)), s.over(length)];
                     let weight = width.times(weight);
                     for k in 0..2 {
                         shares[k] = shares[k].plus(weight.by(shape[k]));
@@ -350,7 +388,7 @@ impl MeasuredBody {
                     mass[1] = mass[1].plus(weight.by(shape[0]).by(shape[1]));
                 }
                 lengths = lengths.plus(width);
-                let reference_length = Number::constant(face.along[1] - face.along[0]);
+                let reference_length = PlaneNumber::constant(face.along[1] - face.along[0]);
                 undeformed = undeformed.plus(width.by(reference_length).over(high.minus(low)));
             }
             if shares[0].0 + shares[1].0 <= 0.0 {
@@ -358,7 +396,7 @@ impl MeasuredBody {
             }
             let own = usize::from(*last == self.node);
             let determinant = mass[0].by(mass[2]).minus(mass[1].by(mass[1]));
-            let fitted = |sums: [Number; 2]| {
+            let fitted = |sums: [PlaneNumber; 2]| {
                 let [one, other] = [sums[own], sums[1 - own]];
                 one.by(mass[2 - 2 * own]).minus(other.by(mass[1])).over(determinant)
             };
@@ -368,32 +406,28 @@ impl MeasuredBody {
         }
         if weights.0 == 0.0 {
             let apart = self.apart(point);
-            return Values { gap: apart, place: zero, stretch: Number::constant(1.0), period: None };
+            return MeasuredGap { gap: apart, place: zero, stretch: PlaneNumber::constant(1.0), period: None };
         }
-        Values { gap: gaps.over(weights), place: places.over(weights), stretch: lengths.over(undeformed), period }
+        MeasuredGap { gap: gaps.over(weights), place: places.over(weights), stretch: lengths.over(undeformed), period }
     }
 
-    /// The distance where nothing is opposite; without derivatives, as nothing acts.
-    fn apart(&self, point: &dyn Fn(usize) -> Point) -> Number {
-        let mut moved = HashMap::new();
-        for node in self.places.keys() {
-            let at = point(*node);
-            moved.insert(*node, MeasuredVector::new(at[0].0, at[1].0, 0.0) - self.place(*node));
-        }
-        let most = moved.keys().copied().max().unwrap_or(0);
-        let mut displacements = vec![MeasuredVector::zeros(); most + 1];
-        moved.into_iter().for_each(|(node, motion)| displacements[node] = motion);
-        Number::constant(self.distance(&displacements))
+    /// The distance of the node where nothing is opposite; without derivatives, as nothing acts.
+    fn apart(&self, point: &dyn Fn(usize) -> NumberPair) -> PlaneNumber {
+        let position = |node: usize| {
+            let [x, y] = point(node);
+            MeasuredVector::new(x.0, y.0, 0.0)
+        };
+        PlaneNumber::constant(self.distance_of(position(self.node), &position))
     }
 
     /// Control points of the smoothed surface at a face, and their coordinates along it.
-    fn controls(&self, face: &OppositeFace, point: &dyn Fn(usize) -> Point) -> ([Point; 4], [f64; 4]) {
+    fn controls(&self, face: &OppositeFace, point: &dyn Fn(usize) -> NumberPair) -> ([NumberPair; 4], [f64; 4]) {
         let [first, last] = face.nodes.map(point);
         let length = |beside: Option<usize>| {
             let along = beside.map_or(face.along, |beside| self.opposite[beside].along);
             along[1] - along[0]
         };
-        let beyond = |near: Point, far: Point| [0, 1].map(|k| near[k].times(2.0).minus(far[k]));
+        let beyond = |near: NumberPair, far: NumberPair| [0, 1].map(|k| near[k].times(2.0).minus(far[k]));
         let before = face.beside[0].map_or_else(|| beyond(first, last), |beside| point(self.opposite[beside].nodes[0]));
         let after = face.beside[1].map_or_else(|| beyond(last, first), |beside| point(self.opposite[beside].nodes[1]));
         let [from, to] = face.along;
@@ -402,30 +436,35 @@ impl MeasuredBody {
 
     /// The way from a point of the smoothed surface to the node, the tangent there, the coordinate along the surface and
     /// its slope.
-    fn curve(&self, face: usize, t: Number, point: &dyn Fn(usize) -> Point) -> (Point, Point, Number, Number) {
+    fn curve(
+        &self,
+        face: usize,
+        t: PlaneNumber,
+        point: &dyn Fn(usize) -> NumberPair,
+    ) -> (NumberPair, NumberPair, PlaneNumber, PlaneNumber) {
         let face = &self.opposite[face];
         let (controls, along) = self.controls(face, point);
         let [values, slopes] = weights(t, face.beside.map(|beside| beside.is_none()));
-        let sum = |weights: &[Number; 4]| {
+        let sum = |weights: &[PlaneNumber; 4]| {
             [0, 1].map(|k| {
                 let terms = weights.iter().zip(&controls).map(|(weight, control)| weight.by(control[k]));
-                terms.fold(Number::constant(0.0), Number::plus)
+                terms.fold(PlaneNumber::constant(0.0), PlaneNumber::plus)
             })
         };
-        let scalar = |weights: &[Number; 4]| {
+        let scalar = |weights: &[PlaneNumber; 4]| {
             let terms = weights.iter().zip(along).map(|(weight, place)| weight.times(place));
-            terms.fold(Number::constant(0.0), Number::plus)
+            terms.fold(PlaneNumber::constant(0.0), PlaneNumber::plus)
         };
         (minus(point(self.node), sum(&values)), sum(&slopes), scalar(&values), scalar(&slopes))
     }
 
     /// The nearest point of the smoothed surface.
-    fn nearest(&self, point: &dyn Fn(usize) -> Point) -> Found {
+    fn nearest(&self, point: &dyn Fn(usize) -> NumberPair) -> OppositePart {
         let mut best = (f64::INFINITY, 0, 0.0);
         for index in 0..self.opposite.len() {
             for sample in 0..=SAMPLES {
                 let t = sample as f64 / SAMPLES as f64;
-                let (from, ..) = self.curve(index, Number::constant(t), point);
+                let (from, ..) = self.curve(index, PlaneNumber::constant(t), point);
                 let distance = product(from, from).0;
                 if distance < best.0 {
                     best = (distance, index, t);
@@ -435,7 +474,7 @@ impl MeasuredBody {
         let (_, mut index, t) = best;
         let part = 1.0 / SAMPLES as f64;
         let forward = |index: usize, t: f64| {
-            let (from, slope, ..) = self.curve(index, Number::constant(t), point);
+            let (from, slope, ..) = self.curve(index, PlaneNumber::constant(t), point);
             product(from, slope).0
         };
         let (mut low, mut high) = (t - part, t + part);
@@ -475,24 +514,24 @@ impl MeasuredBody {
         // Secant slope of the product, for one step of Newton's method with derivatives.
         let step = 1e-4;
         let slope = (forward(index, t + step) - forward(index, t - step)) / (2.0 * step);
-        Found { faces: vec![index], place: t, slope }
+        OppositePart { faces: vec![index], place: t, slope }
     }
 
-    fn at_nearest(&self, found: &Found, point: &dyn Fn(usize) -> Point) -> Values {
-        let (Some(face), Found { place: t, slope, .. }) = (found.faces.first().copied(), found) else {
-            return Values {
-                gap: Number::constant(f64::NAN),
-                place: Number::constant(0.0),
-                stretch: Number::constant(1.0),
+    fn at_nearest(&self, found: &OppositePart, point: &dyn Fn(usize) -> NumberPair) -> MeasuredGap {
+        let (Some(face), OppositePart { place: t, slope, .. }) = (found.faces.first().copied(), found) else {
+            return MeasuredGap {
+                gap: PlaneNumber::constant(f64::NAN),
+                place: PlaneNumber::constant(0.0),
+                stretch: PlaneNumber::constant(1.0),
                 period: None,
             };
         };
-        let (from, tangent, ..) = self.curve(face, Number::constant(*t), point);
-        let place = Number::constant(*t).minus(product(from, tangent).times(1.0 / slope));
+        let (from, tangent, ..) = self.curve(face, PlaneNumber::constant(*t), point);
+        let place = PlaneNumber::constant(*t).minus(product(from, tangent).times(1.0 / slope));
         let (from, tangent, position, advance) = self.curve(face, DualNumber(*t, place.1), point);
         let size = root(product(tangent, tangent));
         let gap = from[1].by(tangent[0]).minus(from[0].by(tangent[1])).over(size);
-        Values { gap, place: position, stretch: size.over(advance), period: self.opposite[face].period }
+        MeasuredGap { gap, place: position, stretch: size.over(advance), period: self.opposite[face].period }
     }
 }
 
@@ -512,45 +551,45 @@ impl BodyState {
     }
 }
 
-/// Values and slopes of the cubic B-spline's functions on a face; beyond an end of the surface those of a straight line.
-fn weights(t: Number, ends: [bool; 2]) -> [[Number; 4]; 2] {
+/// MeasuredGap and slopes of the cubic B-spline's functions on a face; beyond an end of the surface those of a straight line.
+fn weights(t: PlaneNumber, ends: [bool; 2]) -> [[PlaneNumber; 4]; 2] {
     let bounded = if ends[0] && t.0 < 0.0 {
-        Number::constant(0.0)
+        PlaneNumber::constant(0.0)
     } else if ends[1] && t.0 > 1.0 {
-        Number::constant(1.0)
+        PlaneNumber::constant(1.0)
     } else {
         t
     };
-    let one = Number::constant(1.0);
+    let one = PlaneNumber::constant(1.0);
     let rest = one.minus(bounded);
-    let cube = |a: Number| a.by(a).by(a).times(1.0 / 6.0);
-    let square = |a: Number| a.by(a).times(0.5);
+    let cube = |a: PlaneNumber| a.by(a).by(a).times(1.0 / 6.0);
+    let square = |a: PlaneNumber| a.by(a).times(0.5);
     // The inner functions by what is left of one, so that all four sum to one.
-    let second = |a: Number| Number::constant(2.0 / 3.0).minus(a.by(a)).plus(a.by(a).by(a).times(0.5));
+    let second = |a: PlaneNumber| PlaneNumber::constant(2.0 / 3.0).minus(a.by(a)).plus(a.by(a).by(a).times(0.5));
     let values = [cube(rest), second(bounded), second(rest), cube(bounded)];
-    let second_slope = |a: Number| a.times(-2.0).plus(a.by(a).times(1.5));
+    let second_slope = |a: PlaneNumber| a.times(-2.0).plus(a.by(a).times(1.5));
     let slopes = [square(rest).times(-1.0), second_slope(bounded), second_slope(rest).times(-1.0), square(bounded)];
     let beyond = t.minus(bounded);
     [std::array::from_fn(|k| values[k].plus(beyond.by(slopes[k]))), slopes]
 }
 
-fn minus(a: Point, b: Point) -> Point {
+fn minus(a: NumberPair, b: NumberPair) -> NumberPair {
     [a[0].minus(b[0]), a[1].minus(b[1])]
 }
 
-fn product(a: Point, b: Point) -> Number {
+fn product(a: NumberPair, b: NumberPair) -> PlaneNumber {
     a[0].by(b[0]).plus(a[1].by(b[1]))
 }
 
-fn root(a: Number) -> Number {
+fn root(a: PlaneNumber) -> PlaneNumber {
     let root = a.0.sqrt();
     a.map(root, 0.5 / root)
 }
 
-fn larger(a: Number, b: Number) -> Number {
+fn larger(a: PlaneNumber, b: PlaneNumber) -> PlaneNumber {
     if a.0 > b.0 { a } else { b }
 }
 
-fn smaller(a: Number, b: Number) -> Number {
+fn smaller(a: PlaneNumber, b: PlaneNumber) -> PlaneNumber {
     if a.0 < b.0 { a } else { b }
 }

@@ -2,8 +2,8 @@
 
 use crate::check::measure::errors::{Errors, worse};
 use crate::check::measure::global::largest_or_nan;
+use crate::check::measure::numbers::{MeasuredVector, angle, padded};
 use crate::check::measure::obstacles::MeasuredFrame;
-use crate::check::measure::vector::{MeasuredVector, angle, padded};
 use crate::result::increment::{ContactState, Status};
 
 /// A traction within this fraction of `μ r_n` of the friction cone counts as on the cone.

@@ -1,9 +1,9 @@
 //! Forces and strain energy of the posted elements, for the measure only.
 
 use crate::check::measure::beams::{BeamResponse, MeasuredBeam};
+use crate::check::measure::numbers::{MeasuredVector, largest, padded};
 use crate::check::measure::solids::{MeasuredSolid, SolidResponse};
 use crate::check::measure::space_beams::MeasuredSpaceBeam;
-use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::model::request::{Element as Posted, Model, Strain};
 
 /// An element with its nodes numbered; beams are in `beams`.

@@ -10,9 +10,9 @@
 use crate::check::measure::beams::BeamResponse;
 use crate::check::measure::elements::MeasuredResponse;
 use crate::check::measure::errors::{Errors, worse};
+use crate::check::measure::numbers::{MeasuredVector, largest, padded};
 use crate::check::measure::posted::Posted;
 use crate::check::measure::solids::SolidResponse;
-use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::result::increment::{BeamEndForces, ElementState, Increment};
 use nalgebra::Matrix3 as MeasuredTensor;
 

@@ -4,8 +4,8 @@
 #![warn(missing_docs)]
 
 use crate::check::measure::Judge;
+use crate::check::measure::numbers::MeasuredVector;
 use crate::check::measure::posted::{Posted, PostedLoading};
-use crate::check::measure::vector::MeasuredVector;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -46,7 +46,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `errors` | the errors and their maxima |
-//! | `posted`, `elements`, `beams`, `space_beams`, `solids`, `dual_number`, `obstacles`, `polylines`, `bodies`, `vector` | the posted model, with indices instead of names |
+//! | `posted`, `elements`, `beams`, `space_beams`, `solids`, `obstacles`, `polylines`, `bodies`, `numbers` | the posted model, with indices instead of names |
 //! | `contacts` | the check of one contact |
 //! | `global` | the balance of the whole structure, and the forces as reported |
 //! | `rows`, `apart` | the contacts with a row in an increment, and the contacts without a row |
@@ -56,35 +56,34 @@ pub(crate) mod apart;
 pub(crate) mod beams;
 mod bodies;
 pub(crate) mod contacts;
-pub(crate) mod dual_number;
 pub(crate) mod elements;
 pub(crate) mod errors;
 pub(crate) mod global;
 pub(crate) mod history;
+mod numbers;
 pub(crate) mod obstacles;
 mod polylines;
 pub(crate) mod posted;
 pub(crate) mod rows;
 pub(crate) mod solids;
 pub(crate) mod space_beams;
-pub(crate) mod vector;
 
 pub use errors::{Errors, Largest, Maxima};
 pub use history::{HistoryError, JudgeHistory};
 
 use crate::model::JobRequest;
-use crate::result::increment::Increment;
+use crate::result::increment::{ContactState, Increment};
 use apart::Apart;
 use contacts::Seen;
 use elements::{MeasuredElement, MeasuredResponse};
 use errors::worse;
 use global::Balance;
 use history::PreviousPoint;
+use numbers::{MeasuredVector, largest, padded};
 use obstacles::MeasuredFrame;
-use posted::{Counterpart, Posted, PostedLoading};
+use posted::{Counterpart, Posted, PostedContact, PostedLoading};
 use rows::{ContactRows, RowChange};
 use std::f64::consts::TAU;
-use vector::{MeasuredVector, largest, padded};
 
 /// Forces below this fraction of the force that stretches the stiffest element by the displacement scale count as zero.
 const NO_FORCE: f64 = 1e-20;
@@ -180,6 +179,32 @@ impl Workspace {
             }
         }
         most
+    }
+
+    /// Adds the forces of a contact to the nodes it acts on.
+    fn add_contact(
+        &mut self,
+        posted: &Posted,
+        contact: &PostedContact,
+        state: &ContactState,
+        frame: &MeasuredFrame,
+        outside: &mut Balance,
+    ) {
+        match &contact.counterpart {
+            Counterpart::Obstacle(_) => {
+                let force = contacts::force(state, frame);
+                self.balance[contact.node] -= force;
+                outside.add(posted, contact.node, &self.displacements[contact.node], &force);
+            }
+            Counterpart::Body(body) if state.normal_reaction != 0.0 => {
+                let traction = state.tangential_reaction.first().copied().unwrap_or(0.0);
+                for (node, force) in body.state(&self.displacements).forces(state.normal_reaction, traction).0 {
+                    self.balance[node] -= force;
+                    outside.between(&force);
+                }
+            }
+            Counterpart::Body(_) => {}
+        }
     }
 }
 
@@ -388,23 +413,12 @@ impl Judge {
         work.frames.clear();
         let rows = self.rows.contacts().iter().map(|index| &posted.contacts[*index]);
         for (contact, state) in rows.zip(&increment.contacts) {
-            let frame = posted.frame(contact, &work.loading, &work.displacements);
-            work.frames.push(frame);
-            match &contact.counterpart {
-                Counterpart::Obstacle(_) => {
-                    let force = contacts::force(state, &frame);
-                    work.balance[contact.node] -= force;
-                    outside.add(posted, contact.node, &work.displacements[contact.node], &force);
-                }
-                Counterpart::Body(body) if state.normal_reaction != 0.0 => {
-                    let traction = state.tangential_reaction.first().copied().unwrap_or(0.0);
-                    for (node, force) in body.state(&work.displacements).forces(state.normal_reaction, traction).0 {
-                        work.balance[node] -= force;
-                        outside.between(&force);
-                    }
-                }
-                Counterpart::Body(_) => {}
+            let mut frame = posted.frame(contact, &work.loading, &work.displacements);
+            if let (Counterpart::Body(body), true) = (&contact.counterpart, state.normal_reaction <= 0.0) {
+                frame.gap = body.open_gap(&work.displacements);
             }
+            work.frames.push(frame);
+            work.add_contact(posted, contact, state, &frame, &mut outside);
             most = most.max(state.normal_reaction.abs());
         }
         // A force that is not finite already gives an unbounded error; the scale of the other errors stays finite.

@@ -3,8 +3,8 @@
 //! A frame is the gap, the unit normal into the free side, and the tangents: in 2D `(n_y, -n_x)`; in 3D
 //! `t1 = (e_k - n_k n)/|.|` with `k` the first index whose `|n_k|` is the smallest within 1e-9, and `t2 = n x t1`.
 
+use crate::check::measure::numbers::{MeasuredVector, largest, padded};
 use crate::check::measure::polylines::MeasuredCurve;
-use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::model::request::{Obstacle as Posted, Side};
 
 /// Components of a unit normal that differ by no more than this count as equal.

@@ -2,9 +2,9 @@
 
 use crate::check::measure::bodies::MeasuredBody;
 use crate::check::measure::elements::MeasuredElement;
+use crate::check::measure::numbers::{MeasuredVector, largest, padded};
 use crate::check::measure::obstacles::{MeasuredFrame, MeasuredObstacle};
 use crate::check::measure::solids::{MeasuredFace, SolidShares, pressed_surfaces};
-use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::model::request::{JobRequest, Model, PlaneCondition};
 use indexmap::{IndexMap, IndexSet};
 use std::f64::consts::SQRT_2;

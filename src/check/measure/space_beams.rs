@@ -13,8 +13,8 @@
 //! are the force and the moments, are carried along.
 
 use crate::check::measure::beams::{BeamResponse, NodeShare, ROUNDINGS, integral_of};
-use crate::check::measure::dual_number::DualNumber;
-use crate::check::measure::vector::{MeasuredVector, largest, padded};
+use crate::check::measure::numbers::DualNumber;
+use crate::check::measure::numbers::{MeasuredVector, largest, padded};
 use crate::model::request::{BendingStiffness, Element as Posted, Model};
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 

@@ -123,11 +123,13 @@ fn contact_rows(scene: &Scene, row: &RowSource<'_>, totals: &Totals) -> (Vec<Con
     let loading = row.loading;
     for (one, place) in reported(scene, row).zip(row.rows) {
         let frame = row.whole.frame(one.contact, row.state);
+        let is_pressed = row.places[one.contact].is_some_and(|index| row.state.reactions[index].normal > 0.0);
+        let gap = if is_pressed { frame.gap } else { row.whole.open_gap(one.contact, row.state) };
         let mut contact = ContactState {
             node: Arc::clone(&one.node),
             obstacle: Arc::clone(&one.obstacle),
             status: Status::Free,
-            gap: frame.gap * length,
+            gap: gap * length,
             normal_reaction: 0.0,
             tangential_reaction: smallvec![0.0; dimension - 1],
             reaction: smallvec![0.0; dimension],

@@ -68,6 +68,12 @@ pub trait CoupledKinematics: Debug + Send + Sync {
         f64::INFINITY
     }
 
+    /// Where the node that the contact is named after is beyond the end of the surface: the distance to it, which then is the
+    /// gap of an open contact.
+    fn beyond_end(&self, _displacement: LocalDisplacements<'_>) -> Option<f64> {
+        None
+    }
+
     /// A distance that has to be covered before the contact can close, and by how much a unit motion of the degrees of
     /// freedom shortens it at most; `None` where no bound is known: the contact then always counts as within reach.
     fn clearance(&self, _displacement: LocalDisplacements<'_>) -> Option<(f64, f64)> {

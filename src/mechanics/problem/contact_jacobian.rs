@@ -60,6 +60,13 @@ pub fn distance_to_end(structure: &Structure, contact: &ContactPair, displacemen
     coupled.distance_to_end(&|at| displacement[freedom(at)])
 }
 
+/// See [`CoupledKinematics::beyond_end`]; `None` for a single node.
+pub fn beyond_end(structure: &Structure, contact: &ContactPair, displacement: &[f64]) -> Option<f64> {
+    let Kinematics::Coupled(coupled) = &contact.kinematics else { return None };
+    let freedom = freedom_of(structure, coupled.as_ref());
+    coupled.beyond_end(&|at| displacement[freedom(at)])
+}
+
 /// The force of a contact on the body of the node that the contact is named after, in the axes of space: most of it acts
 /// on this node, and all of it where the surfaces fit each other.
 pub fn force_on_own_body(structure: &Structure, contact: &ContactPair, displacement: &[f64], force: &Vector) -> Vector {

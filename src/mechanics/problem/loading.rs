@@ -123,10 +123,21 @@ impl Loading<'_> {
         }
     }
 
-    /// Gap of a contact.
+    /// Gap of a contact. A contact that carries a reaction keeps its gap past the end of a surface, which goes on straight.
     #[inline(always)]
     pub fn gap(&self, contact: usize, state: &State) -> f64 {
-        self.contacts[contact].gap(&self.relative(contact, state))
+        let is_pressed = || state.reactions.get(contact).is_some_and(|reaction| reaction.normal > 0.0);
+        if self.contacts[contact].kinematics.node().is_some() || is_pressed() {
+            return self.contacts[contact].gap(&self.relative(contact, state));
+        }
+        self.open_gap(contact, state)
+    }
+
+    /// Gap of a contact without reaction.
+    pub fn open_gap(&self, contact: usize, state: &State) -> f64 {
+        let data = &self.contacts[contact];
+        let beyond = contact_jacobian::beyond_end(self.structure, data, &state.displacement);
+        beyond.unwrap_or_else(|| data.gap(&self.relative(contact, state)))
     }
 
     /// The force scale against which a contact's reaction counts as zero: the forces that meet at its node, or the

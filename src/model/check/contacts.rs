@@ -30,6 +30,7 @@ pub(super) fn contacts(scope: &Scope, curves: &Curves, mistakes: &mut Mistakes) 
     let mut seen = HashSet::new();
     let mut gaps: HashMap<usize, Vec<Gap>> = HashMap::new();
     let surfaces = ContactSurfaces::new(scope.model, 1.0);
+    let (mut touching, mut pairs) = (HashSet::new(), HashSet::new());
     for (index, contact) in scope.model.contacts.iter().enumerate() {
         let at = at.index(index);
         friction(contact, &at.member("friction"), mistakes);
@@ -37,6 +38,21 @@ pub(super) fn contacts(scope: &Scope, curves: &Curves, mistakes: &mut Mistakes) 
         if contact.against.is_some() {
             if let Some(node) = node {
                 between_bodies(scope, &surfaces, contact, node, &at, mistakes);
+                if !touching.insert((node, contact.counterpart())) {
+                    mistakes.add(&at, || {
+                        let (node, surface) = (quoted(&contact.node), quoted(contact.counterpart()));
+                        format!("{node} touches {surface} in another contact, too; leave one of them out")
+                    });
+                }
+            }
+            if let (Some(own), Some(other)) = (&contact.surface, &contact.against)
+                && pairs.insert((own, other))
+                && pairs.contains(&(other, own))
+            {
+                mistakes.add(&at, || {
+                    let (own, other) = (quoted(own), quoted(other));
+                    format!("{own} touches {other} and {other} {own}: one of them is enough, and both are too many")
+                });
             }
             continue;
         }

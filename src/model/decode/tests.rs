@@ -124,7 +124,8 @@ fn contact() -> impl Strategy<Value = Contact> {
         // An obstacle without a name is none.
         None => Contact::new(node, format!("obstacle {other}"), friction),
         Some((surface, discretisation)) => {
-            Contact { node, discretisation, ..Contact::between(surface, other, friction) }
+            // Without a node it would stand for all nodes of the surface.
+            Contact { node: format!("node {node}"), discretisation, ..Contact::between(surface, other, friction) }
         }
     })
 }

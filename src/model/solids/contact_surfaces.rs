@@ -114,6 +114,13 @@ impl<'a> ContactSurfaces<'a> {
         }
     }
 
+    /// Whether a node is on the free side of the surface that it touches, and its faces do not cross it: the mean of the gap
+    /// may be negative there, where faces are much longer than those opposite.
+    fn is_apart(&self, node: usize, kinematics: &Arc<dyn CoupledKinematics>, opposite: &OppositeSurface) -> bool {
+        let is_clear = kinematics.clearance(&|_| 0.0).is_some_and(|(distance, _)| distance > 0.0);
+        is_clear && opposite.is_free(self.place(node))
+    }
+
     /// A contact of a node with a surface.
     ///
     /// # Errors
@@ -121,6 +128,7 @@ impl<'a> ContactSurfaces<'a> {
     pub fn contact(&self, contact: &Contact, node: usize) -> Result<BodyContact, BodyContactMistake> {
         let against = contact.against.as_deref().unwrap_or_default();
         let opposite = self.find(against, "against")?;
+        let touched = Arc::clone(&opposite);
         let name = || quoted(&contact.node).to_string();
         if opposite.nodes.contains(&node) {
             let why = format!(
@@ -169,16 +177,21 @@ impl<'a> ContactSurfaces<'a> {
                     (Arc::new(kinematics), gap, face)
                 }
             };
-        if !gap.is_finite() || gap < -MESHED_PENETRATION * face {
-            let found = gap * self.unit;
-            return Err((
-                "node",
-                format!(
-                    "{} is behind the surface {} at the start, gap {found:?}; a gap of 0 or more is expected",
-                    name(),
-                    quoted(against)
-                ),
-            ));
+        if kinematics.beyond_end(&|_| 0.0).is_some() {
+            // Past the end of the surface there is no contact yet.
+            return Ok(BodyContact { kinematics, gap, overlap: 0.0 });
+        }
+        let is_behind = !touched.is_free(self.place(node)) && gap.abs() > MESHED_PENETRATION * face;
+        let is_deep = gap < -MESHED_PENETRATION * face && !self.is_apart(node, &kinematics, &touched);
+        if !gap.is_finite() || is_behind || is_deep {
+            let found = if is_behind { -gap.abs() } else { gap } * self.unit;
+            let why = format!(
+                "{} is behind the surface {} at the start, gap {found:?}; a gap of 0 or more is expected (the free side of bars \
+                 and beams is to the left of the order of a face's nodes)",
+                name(),
+                quoted(against)
+            );
+            return Err(("node", why));
         }
         let reach = kinematics.nodes().iter().filter_map(|node| self.model.nodes.get_index(*node));
         let reach = reach.flat_map(|(_, place)| place).fold(0.0_f64, |most, value| most.max(value.abs())) / self.unit;

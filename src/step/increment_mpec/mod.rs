@@ -186,7 +186,7 @@ impl<'a> IncrementProgram<'a> {
         let mut reach = Vec::new();
         for (contact, data) in loading.contacts.iter().enumerate() {
             let frame = loading.frame(contact, base);
-            if frame.gap > REACH_IN_LENGTHS * step {
+            if frame.gap.max(loading.gap(contact, base)) > REACH_IN_LENGTHS * step {
                 continue;
             }
             let tangents = data.tangents();

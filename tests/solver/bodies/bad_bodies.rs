@@ -97,6 +97,22 @@ fn what_makes_no_contact_of_bodies_is_refused_with_its_place() {
         contact,
         &["revolution"],
     );
+    refused(
+        |model| {
+            let again = model["contacts"][0].clone();
+            model["contacts"].as_array_mut().expect("contacts").push(again);
+        },
+        "/model/contacts/",
+        &["leave one of them out"],
+    );
+    refused(
+        |model| {
+            let turned = json!({"surface": "below", "against": "above"});
+            model["contacts"].as_array_mut().expect("contacts").push(turned);
+        },
+        "/model/contacts/",
+        &["both are too many"],
+    );
     refused(|model| model["contacts"][0]["friction"] = json!(-0.1), &format!("{contact}/friction"), &["0 or more"]);
     refused(
         |model| model["stages"][0]["pressures"] = json!({"belov": 1}),

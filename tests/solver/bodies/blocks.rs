@@ -124,12 +124,13 @@ fn a_block_on_a_block_slips_as_a_whole_at_the_limit_of_friction() {
         close(pulled, 0.3 * 4.0, 1e-10, &format!("{cells:?}"));
         let slips = increments.iter().filter_map(|increment| increment.point.event.as_deref());
         let slips: usize = slips.map(|event| event.matches("to slip").count()).sum();
-        assert!(last.contacts.iter().all(|contact| contact.status == Status::Slip) && slips > cells[1], "{slips}");
+        assert!(last.contacts.iter().all(|contact| contact.status == Status::Slip) && slips >= cells[1], "{slips}");
     }
 }
 
 /// A block is pushed up a wedge of slope 0.1 with friction 0.3: `F/G = (tan α + μ)/(1 - μ tan α) = 0.412371134` (NAFEMS,
-/// benchmark CGS-4). Where the rigid wedge carries the multipliers, the block's surface is straight in the mean alone.
+/// benchmark CGS-4). Where the rigid wedge carries the multipliers, the
+/// block's surface is straight in the mean alone.
 #[test]
 fn a_block_is_pushed_up_a_wedge() {
     for (cells, swapped, bar) in [([13, 11], false, 1e-10), ([9, 20], true, 1e-4)] {

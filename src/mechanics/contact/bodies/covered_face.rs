@@ -3,13 +3,13 @@
 
 use crate::algebra::differential::WithGradient;
 use crate::mechanics::contact::bodies::face_moments::{
-    FaceAtNode, MOMENTS, NodalValues, OF_FACE, moments, nodal_values,
+    FaceAtNode, MOMENTS, MeanAtNode, OF_FACE, moments, nodal_values,
 };
 use crate::mechanics::contact::bodies::{PlaneVector, turned_left};
 use smallvec::SmallVec;
 
 /// A piece of the opposite surface in the frame of a face.
-pub(super) struct Piece {
+pub(super) struct CoveringPiece {
     /// Its nodes, by their indices among the contact's.
     pub(super) nodes: [usize; 2],
     /// Length of the face, then `s` and `h` of both nodes.
@@ -20,13 +20,13 @@ pub(super) struct Piece {
 }
 
 /// A face in its present position, with what covers it.
-pub(super) struct Covered {
+pub(super) struct CoveredFace {
     /// Its nodes, by their indices among the contact's.
     pub(super) nodes: [usize; 2],
     pub(super) at: FaceAtNode,
     pub(super) length: f64,
     pub(super) along: PlaneVector,
-    pub(super) pieces: SmallVec<[Piece; 4]>,
+    pub(super) pieces: SmallVec<[CoveringPiece; 4]>,
 }
 
 /// All variables of up to two faces.
@@ -34,7 +34,11 @@ pub(super) const VARIABLES: usize = 2 * OF_FACE;
 
 /// Calls `each` with every variable that the values at the node depend on through the gradient `weights` (of all
 /// variables of the covered faces).
-pub(super) fn each_gradient(covered: &[Covered], weights: &[f64; VARIABLES], mut each: impl FnMut(usize, PlaneVector)) {
+pub(super) fn each_gradient(
+    covered: &[CoveredFace],
+    weights: &[f64; VARIABLES],
+    mut each: impl FnMut(usize, PlaneVector),
+) {
     for (face, weights) in covered.iter().zip(weights.chunks_exact(OF_FACE)) {
         let by_length = weights[MOMENTS];
         let [first, last] = face.nodes;
@@ -52,7 +56,7 @@ pub(super) fn each_gradient(covered: &[Covered], weights: &[f64; VARIABLES], mut
     }
 }
 
-impl Covered {
+impl CoveredFace {
     pub(super) fn moments(&self) -> [f64; OF_FACE] {
         let mut sums = [0.0; OF_FACE];
         for piece in &self.pieces {
@@ -68,7 +72,12 @@ impl Covered {
     /// ```text
     /// ds = t·(dx - dx₁) + h/L n·(dx₂ - dx₁),   dh = n·(dx - dx₁) - s/L n·(dx₂ - dx₁),   dL = t·(dx₂ - dx₁)
     /// ```
-    pub(super) fn each_coordinate(&self, piece: &Piece, slopes: &[f64; 5], each: &mut impl FnMut(usize, PlaneVector)) {
+    pub(super) fn each_coordinate(
+        &self,
+        piece: &CoveringPiece,
+        slopes: &[f64; 5],
+        each: &mut impl FnMut(usize, PlaneVector),
+    ) {
         let (along, normal) = (self.along, turned_left(self.along));
         let combined = |a: f64, b: f64| [a * along[0] + b * normal[0], a * along[1] + b * normal[1]];
         let mut turning = 0.0;
@@ -85,13 +94,13 @@ impl Covered {
     }
 }
 
-/// Local numbers of degrees of freedom, in the order in which they are met.
+/// LocalMatrix numbers of degrees of freedom, in the order in which they are met.
 #[derive(Default)]
-pub(super) struct Met {
+pub(super) struct MetNodes {
     pub(super) nodes: SmallVec<[usize; 12]>,
 }
 
-impl Met {
+impl MetNodes {
     pub(super) fn place(&mut self, node: usize) -> usize {
         self.nodes.iter().position(|met| *met == node).unwrap_or_else(|| {
             self.nodes.push(node);
@@ -101,7 +110,7 @@ impl Met {
 }
 
 /// The gradients of gap, place and stretch by the variables of the faces.
-pub(super) fn nodal_gradients(covered: &[Covered]) -> [WithGradient<VARIABLES>; 3] {
+pub(super) fn nodal_gradients(covered: &[CoveredFace]) -> [WithGradient<VARIABLES>; 3] {
     let faces: SmallVec<[_; 2]> = (covered.iter().enumerate())
         .map(|(which, face)| {
             let values = face.moments();
@@ -109,6 +118,6 @@ pub(super) fn nodal_gradients(covered: &[Covered]) -> [WithGradient<VARIABLES>; 
             (face.at, std::array::from_fn(variable))
         })
         .collect();
-    let NodalValues { gap, place, stretch } = nodal_values(&faces);
+    let MeanAtNode { gap, place, stretch } = nodal_values(&faces);
     [gap, place, stretch]
 }

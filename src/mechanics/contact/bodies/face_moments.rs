@@ -49,7 +49,7 @@ pub(super) fn moments<D: Differential>(piece: &[D; 5], along: [f64; 2], goes_on:
 }
 
 /// What the faces at a node give at the node.
-pub(super) struct NodalValues<D> {
+pub(super) struct MeanAtNode<D> {
     pub gap: D,
     /// Position along the opposite surface.
     pub place: D,
@@ -70,7 +70,7 @@ pub(super) struct FaceAtNode {
 /// the shape functions of its other nodes over the covered part (B. I. Wohlmuth, A mortar finite element method using dual
 /// spaces for the Lagrange multiplier, SIAM J. Numer. Anal. 38, 2000). The mean of `h` is the value at the node of the line
 /// that fits `h` best; the weight of a face is the integral of the node's shape function.
-pub(super) fn nodal_values<D: Differential>(faces: &[(FaceAtNode, [D; OF_FACE])]) -> NodalValues<D> {
+pub(super) fn nodal_values<D: Differential>(faces: &[(FaceAtNode, [D; OF_FACE])]) -> MeanAtNode<D> {
     let mut sums = [D::constant(0.0); 5];
     for (at, [area, first, second, heights, heights_first, places, places_first, undeformed, length]) in faces {
         let inverse = area.reciprocal();
@@ -96,5 +96,5 @@ pub(super) fn nodal_values<D: Differential>(faces: &[(FaceAtNode, [D; OF_FACE])]
     }
     let [weight, gap, place, area, undeformed] = sums;
     let inverse = weight.reciprocal();
-    NodalValues { gap: gap * inverse, place: place * inverse, stretch: area * undeformed.reciprocal() }
+    MeanAtNode { gap: gap * inverse, place: place * inverse, stretch: area * undeformed.reciprocal() }
 }

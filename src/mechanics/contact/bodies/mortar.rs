@@ -12,13 +12,15 @@
 //! Laursen have it (A mortar segment-to-segment contact method, Comput. Meth. Appl. Mech. Engng 193, 2004), in place of
 //! averaged normals: all integrals have closed forms.
 
-use crate::mechanics::contact::bodies::covered_face::{Covered, Met, Piece, each_gradient, nodal_gradients};
-use crate::mechanics::contact::bodies::face_moments::{FaceAtNode, NodalValues, OF_FACE, nodal_values};
+use crate::mechanics::contact::bodies::covered_face::{
+    CoveredFace, CoveringPiece, MetNodes, each_gradient, nodal_gradients,
+};
+use crate::mechanics::contact::bodies::face_moments::{FaceAtNode, MeanAtNode, OF_FACE, nodal_values};
 use crate::mechanics::contact::bodies::opposite_surface::{
     OppositeSurface, SurfaceFace, distance_from_segment, distance_of_segments,
 };
 use crate::mechanics::contact::bodies::second_derivatives;
-use crate::mechanics::contact::bodies::tolerances::{LAST_COVERED, LEAST_COVERED};
+use crate::mechanics::contact::bodies::tolerances::{DEEPEST, LAST_COVERED, LEAST_COVERED};
 use crate::mechanics::contact::bodies::{PlaneVector, difference, product, turned_left};
 use crate::mechanics::contact::kinematics::{CoupledKinematics, LocalDisplacements};
 use crate::mechanics::contact::vector::Vector;
@@ -97,7 +99,7 @@ impl MortarNode {
     }
 
     /// The faces with what is opposite; none where no part of any is covered.
-    fn covered(&self, displacement: LocalDisplacements<'_>) -> SmallVec<[Covered; 2]> {
+    fn covered(&self, displacement: LocalDisplacements<'_>) -> SmallVec<[CoveredFace; 2]> {
         let own = self.places.len();
         let chain = self.chain(displacement);
         let mut reference: Option<f64> = None;
@@ -109,13 +111,14 @@ impl MortarNode {
             let length = product(vector, vector).sqrt();
             let along = vector.map(|part| part / length);
             let normal = turned_left(along);
-            let mut pieces: SmallVec<[Piece; 4]> = SmallVec::new();
+            let mut pieces: SmallVec<[CoveringPiece; 4]> = SmallVec::new();
             let (mut area, mut centre) = (0.0, 0.0);
             for face in self.opposite.faces.iter().filter(|face| face.chain == chain) {
                 let ends = face.nodes.map(|node| difference(self.position(displacement, own + node), first));
                 let [s_first, s_last] = ends.map(|end| product(along, end));
-                // Faces that look the other way run the other way.
-                if s_last >= s_first {
+                // Faces that look the other way run the other way; those far behind belong to the far side of a body.
+                let [h_first, h_last] = ends.map(|end| product(normal, end));
+                if s_last >= s_first || h_first.max(h_last) < -DEEPEST * length {
                     continue;
                 }
                 is_covered |= s_first.min(length) - s_last.max(0.0) > LEAST_COVERED * length;
@@ -128,10 +131,9 @@ impl MortarNode {
                 // Around a closed surface coordinates jump; all are counted from the first.
                 let from = *reference.get_or_insert(face.along[0]);
                 let shift = from + self.opposite.way(chain, from, face.along[0]) - face.along[0];
-                let [h_first, h_last] = ends.map(|end| product(normal, end));
                 area += width;
                 centre += width * 0.5 * (high + low);
-                pieces.push(Piece {
+                pieces.push(CoveringPiece {
                     nodes: face.nodes.map(|node| own + node),
                     values: [length, s_first, h_first, s_last, h_last],
                     along: face.along.map(|place| place + shift),
@@ -140,23 +142,31 @@ impl MortarNode {
             }
             if !pieces.is_empty() {
                 let at = FaceAtNode { is_last: nodes[1] == 0, from: centre / area };
-                all.push(Covered { nodes: *nodes, at, length, along, pieces });
+                all.push(CoveredFace { nodes: *nodes, at, length, along, pieces });
             }
         }
         if is_covered { all } else { SmallVec::new() }
     }
 
-    /// Gap, position along the opposite surface and stretch. Where nothing is opposite, the gap is the distance of the two
-    /// surfaces.
+    /// Gap, position along the opposite surface and stretch. Where nothing is opposite, the gap is the distance of the node
+    /// from the surface.
     fn values(&self, displacement: LocalDisplacements<'_>) -> (f64, f64, f64) {
         let covered = self.covered(displacement);
         if covered.is_empty() {
-            return (self.distance(displacement), self.start.1, 1.0);
+            return (self.distance_of_node(displacement), self.start.1, 1.0);
         }
         let faces: SmallVec<[(FaceAtNode, [f64; OF_FACE]); 2]> =
             covered.iter().map(|face| (face.at, face.moments())).collect();
-        let NodalValues { gap, place, stretch } = nodal_values(&faces);
+        let MeanAtNode { gap, place, stretch } = nodal_values(&faces);
         (gap, place, stretch)
+    }
+
+    /// The distance of the node from the opposite surface.
+    fn distance_of_node(&self, displacement: LocalDisplacements<'_>) -> f64 {
+        let (own, place) = (self.places.len(), self.position(displacement, 0));
+        let ends = |face: &SurfaceFace| face.nodes.map(|node| self.position(displacement, own + node));
+        let distances = self.opposite.faces.iter().map(|face| distance_from_segment(place, ends(face)));
+        distances.fold(f64::INFINITY, f64::min)
     }
 
     /// The distance of the node's faces from the opposite surface.
@@ -200,7 +210,7 @@ impl CoupledKinematics for MortarNode {
             return;
         }
         let [gap, place, stretch] = nodal_gradients(&covered);
-        let mut met = Met::default();
+        let mut met = MetNodes::default();
         let mut columns: SmallVec<[[PlaneVector; 2]; 12]> = SmallVec::new();
         for (row, (weights, factor)) in [(&place, stretch.value), (&gap, 1.0)].into_iter().enumerate() {
             each_gradient(&covered, &weights.gradient, |node, gradient| {

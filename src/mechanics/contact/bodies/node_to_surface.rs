@@ -31,15 +31,15 @@ pub struct NodeToSurface {
 const VARIABLES: usize = 10;
 
 /// A piece of the smoothed surface, between the two nodes of a face.
-struct Piece {
+struct SplinePiece {
     face: usize,
     /// The control points, as indices into the nodes of the opposite surface; beyond an end there is none.
     controls: [Option<usize>; 4],
 }
 
 /// The closest point of the smoothed surface.
-struct Closest {
-    piece: Piece,
+struct ClosestSurfacePoint {
+    piece: SplinePiece,
     /// Parameter on the piece, from 0 to 1, beyond it on the continuation of an end.
     parameter: f64,
 }
@@ -120,7 +120,7 @@ impl NodeToSurface {
         [place[0] + displacement(2 * node + 2), place[1] + displacement(2 * node + 3)]
     }
 
-    fn piece(&self, face: usize) -> Piece {
+    fn piece(&self, face: usize) -> SplinePiece {
         let surface = &self.opposite;
         let chain = surface.chains[surface.faces[face].chain];
         let [first, last] = surface.faces[face].nodes;
@@ -130,15 +130,15 @@ impl NodeToSurface {
             let inside = chain.period.is_some() || (if end { other < chain.count } else { at > 0 });
             inside.then(|| surface.faces[chain.first + other % chain.count].nodes[usize::from(end)])
         };
-        Piece { face, controls: [beside(false), Some(first), Some(last), beside(true)] }
+        SplinePiece { face, controls: [beside(false), Some(first), Some(last), beside(true)] }
     }
 
-    fn points(&self, displacement: LocalDisplacements<'_>, piece: &Piece) -> [PlaneVector; 4] {
+    fn points(&self, displacement: LocalDisplacements<'_>, piece: &SplinePiece) -> [PlaneVector; 4] {
         continued(piece.controls.map(|node| node.map(|node| self.control(displacement, node))))
     }
 
     /// The closest point.
-    fn closest(&self, displacement: LocalDisplacements<'_>) -> Closest {
+    fn closest(&self, displacement: LocalDisplacements<'_>) -> ClosestSurfacePoint {
         let own = self.own(displacement);
         let mut best = (f64::INFINITY, 0, 0.0);
         for face in 0..self.opposite.faces.len() {
@@ -165,7 +165,7 @@ impl NodeToSurface {
 
     /// The point near a sample at which the distance is stationary: by Newton's method, with steps halved that do not
     /// come nearer.
-    fn refined(&self, displacement: LocalDisplacements<'_>, face: usize, parameter: f64) -> Closest {
+    fn refined(&self, displacement: LocalDisplacements<'_>, face: usize, parameter: f64) -> ClosestSurfacePoint {
         let own = self.own(displacement);
         let (mut face, mut parameter) = (face, parameter);
         for _ in 0..CLOSEST_POINT_ITERATIONS {
@@ -201,7 +201,7 @@ impl NodeToSurface {
                 break;
             }
         }
-        Closest { piece: self.piece(face), parameter }
+        ClosestSurfacePoint { piece: self.piece(face), parameter }
     }
 
     fn beside(&self, face: usize, after: bool) -> usize {
@@ -211,7 +211,7 @@ impl NodeToSurface {
     }
 
     /// Coordinates of the control points along the undeformed surface.
-    fn along<D: Differential>(&self, piece: &Piece) -> [D; 4] {
+    fn along<D: Differential>(&self, piece: &SplinePiece) -> [D; 4] {
         let face = self.opposite.faces[piece.face];
         let length = |face: usize| {
             let [first, last] = self.opposite.faces[face].along;
@@ -225,7 +225,7 @@ impl NodeToSurface {
 
     /// Gap, position along the opposite surface and stretch.
     fn values(&self, displacement: LocalDisplacements<'_>) -> (f64, f64, f64) {
-        let Closest { piece, parameter } = self.closest(displacement);
+        let ClosestSurfacePoint { piece, parameter } = self.closest(displacement);
         let points = self.points(displacement, &piece);
         let [values, slopes] = basis(parameter, ends(&piece));
         let (from, slope) =
@@ -239,31 +239,30 @@ impl NodeToSurface {
     /// Gap, position along the opposite surface and stretch with their derivatives, and the degrees of freedom of the
     /// variables.
     fn derivatives(&self, displacement: LocalDisplacements<'_>) -> ([WithHessian<VARIABLES>; 3], [usize; VARIABLES]) {
-        type Number = WithHessian<VARIABLES>;
-        let Closest { piece, parameter } = self.closest(displacement);
+        let ClosestSurfacePoint { piece, parameter } = self.closest(displacement);
         let mut freedoms = [usize::MAX; VARIABLES];
         (freedoms[0], freedoms[1]) = (0, 1);
         let own = self.own(displacement);
-        let own = [0, 1].map(|k| Number::variable(own[k], k));
+        let own = [0, 1].map(|k| WithHessian::<VARIABLES>::variable(own[k], k));
         let controls = std::array::from_fn(|at| {
             let node = piece.controls[at]?;
             let place = self.control(displacement, node);
             Some([0, 1].map(|k| {
                 freedoms[2 + 2 * at + k] = 2 * node + 2 + k;
-                Number::variable(place[k], 2 + 2 * at + k)
+                WithHessian::<VARIABLES>::variable(place[k], 2 + 2 * at + k)
             }))
         });
         let points = continued(controls);
         let ends = ends(&piece);
-        let plain = points.map(|point| point.map(Number::value));
+        let plain = points.map(|point| point.map(WithHessian::<VARIABLES>::value));
         let (slope, from) = {
             let [values, slopes] = basis(parameter, ends);
-            let own = own.map(Number::value);
+            let own = own.map(WithHessian::<VARIABLES>::value);
             (combined(&slopes, &plain), difference(own, combined(&values, &plain)))
         };
         let stiffness = product(slope, slope) - product(from, second(parameter, ends, &plain));
         // Each step of Newton's method with the slope at the solution makes one more derivative exact.
-        let mut place = Number::constant(parameter);
+        let mut place = WithHessian::<VARIABLES>::constant(parameter);
         for _ in 0..2 {
             let [values, slopes] = basis(place, ends);
             let (at, slope) = (combined(&values, &points), combined(&slopes, &points));
@@ -274,8 +273,8 @@ impl NodeToSurface {
         let (at, slope) = (combined(&values, &points), combined(&slopes, &points));
         let size = (slope[0] * slope[0] + slope[1] * slope[1]).root();
         let gap = ((own[1] - at[1]) * slope[0] - (own[0] - at[0]) * slope[1]) * size.reciprocal();
-        let along = self.along::<Number>(&piece);
-        let sum = |weights: &[Number; 4]| {
+        let along = self.along::<WithHessian<VARIABLES>>(&piece);
+        let sum = |weights: &[WithHessian<VARIABLES>; 4]| {
             let [a, b, c, d] = [0, 1, 2, 3].map(|k| weights[k] * along[k]);
             a + b + c + d
         };
@@ -284,7 +283,7 @@ impl NodeToSurface {
 }
 
 /// Whether the piece is the first and the last of its surface.
-fn ends(piece: &Piece) -> [bool; 2] {
+fn ends(piece: &SplinePiece) -> [bool; 2] {
     [piece.controls[0].is_none(), piece.controls[3].is_none()]
 }
 
@@ -334,8 +333,17 @@ impl CoupledKinematics for NodeToSurface {
         }
     }
 
+    fn beyond_end(&self, displacement: LocalDisplacements<'_>) -> Option<f64> {
+        let left = self.distance_to_end(displacement);
+        let own = self.own(displacement);
+        let faces = self.opposite.faces.iter();
+        let distances =
+            faces.map(|face| distance_from_segment(own, face.nodes.map(|node| self.control(displacement, node))));
+        (left < 0.0).then(|| distances.fold(f64::INFINITY, f64::min))
+    }
+
     fn distance_to_end(&self, displacement: LocalDisplacements<'_>) -> f64 {
-        let Closest { piece, parameter } = self.closest(displacement);
+        let ClosestSurfacePoint { piece, parameter } = self.closest(displacement);
         let surface = &self.opposite;
         let face = surface.faces[piece.face];
         let chain = surface.chains[face.chain];

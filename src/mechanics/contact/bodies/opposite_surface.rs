@@ -1,6 +1,7 @@
 //! The surface that a node of another body is in front of, in the plane.
 
-use crate::mechanics::contact::bodies::{PlaneVector, difference, product};
+use crate::mechanics::contact::bodies::tolerances::SAME_DISTANCE;
+use crate::mechanics::contact::bodies::{PlaneVector, difference, product, turned_left};
 use std::collections::HashMap;
 
 /// A surface of straight faces, free to the left of the order of their nodes.
@@ -13,7 +14,7 @@ pub struct OppositeSurface {
     /// The faces, chain by chain, each with its two nodes as indices into `nodes`.
     pub faces: Vec<SurfaceFace>,
     /// The chains of faces, one after the other.
-    pub chains: Vec<Chain>,
+    pub chains: Vec<FaceChain>,
 }
 
 /// A straight face.
@@ -30,7 +31,7 @@ pub struct SurfaceFace {
 
 /// Faces that follow one another.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Chain {
+pub struct FaceChain {
     /// Index of the first face.
     pub first: usize,
     /// Number of faces.
@@ -79,7 +80,7 @@ impl OppositeSurface {
             while let Some(before) = ending.get(&faces[first][0]).copied().filter(|before| *before != given) {
                 first = before;
             }
-            let chain = Chain { first: surface.faces.len(), count: 0, period: None };
+            let chain = FaceChain { first: surface.faces.len(), count: 0, period: None };
             let (mut face, mut along) = (first, 0.0);
             let period = loop {
                 taken[face] = true;
@@ -114,7 +115,7 @@ impl OppositeSurface {
                     last.ends[1] = true;
                 }
             }
-            surface.chains.push(Chain { count: surface.faces.len() - chain.first, period, ..chain });
+            surface.chains.push(FaceChain { count: surface.faces.len() - chain.first, period, ..chain });
         }
         Ok(surface)
     }
@@ -125,6 +126,26 @@ impl OppositeSurface {
             Some(period) => (to - from) - period * ((to - from) / period).round(),
             None => to - from,
         }
+    }
+
+    /// Whether a point is on the free side of the undeformed surface, or beyond an end of it.
+    pub fn is_free(&self, point: PlaneVector) -> bool {
+        // At a corner two faces are nearest; the one that the point is more across decides.
+        let mut best = (f64::INFINITY, 0.0);
+        for face in &self.faces {
+            let ends = face.nodes.map(|node| self.places[node]);
+            let (edge, from) = (difference(ends[1], ends[0]), difference(point, ends[0]));
+            let square = product(edge, edge);
+            let share = product(edge, from) / square;
+            let is_beyond = (face.ends[0] && share < -SAME_DISTANCE) || (face.ends[1] && share > 1.0 + SAME_DISTANCE);
+            let across = if is_beyond { f64::INFINITY } else { product(turned_left(edge), from) / square.sqrt() };
+            let distance = distance_from_segment(point, ends);
+            let is_as_near = (distance - best.0).abs() <= SAME_DISTANCE * distance;
+            if (is_as_near && across.abs() > f64::abs(best.1)) || (!is_as_near && distance < best.0) {
+                best = (distance, across);
+            }
+        }
+        best.1 > 0.0
     }
 
     /// The face before and the face after a node (an index into `nodes`).

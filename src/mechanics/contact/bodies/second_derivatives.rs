@@ -2,26 +2,28 @@
 //! frames of the faces, and of these by the positions of the nodes.
 
 use crate::algebra::differential::{Differential, WithHessian};
-use crate::mechanics::contact::bodies::covered_face::{Covered, Met, Piece, VARIABLES, each_gradient, nodal_gradients};
-use crate::mechanics::contact::bodies::face_moments::{MOMENTS, NodalValues, OF_FACE, moments, nodal_values};
+use crate::mechanics::contact::bodies::covered_face::{
+    CoveredFace, CoveringPiece, MetNodes, VARIABLES, each_gradient, nodal_gradients,
+};
+use crate::mechanics::contact::bodies::face_moments::{MOMENTS, MeanAtNode, OF_FACE, moments, nodal_values};
 use crate::mechanics::contact::bodies::turned_left;
 use itertools::Itertools;
 use smallvec::SmallVec;
 
 /// A square matrix over the degrees of freedom that were met.
-struct Local {
-    met: Met,
+struct LocalMatrix {
+    met: MetNodes,
     size: usize,
     values: Vec<f64>,
 }
 
-impl Local {
+impl LocalMatrix {
     fn add(&mut self, row: usize, column: usize, value: f64) {
         self.values[row * self.size + column] += value;
     }
 }
 
-pub(super) fn each(covered: &[Covered], [along, normal]: [f64; 2], add: &mut dyn FnMut(usize, usize, f64)) {
+pub(super) fn each(covered: &[CoveredFace], [along, normal]: [f64; 2], add: &mut dyn FnMut(usize, usize, f64)) {
     let faces: SmallVec<[_; 2]> = (covered.iter().enumerate())
         .map(|(which, face)| {
             let values = face.moments();
@@ -29,9 +31,9 @@ pub(super) fn each(covered: &[Covered], [along, normal]: [f64; 2], add: &mut dyn
             (face.at, std::array::from_fn(variable))
         })
         .collect();
-    let NodalValues { gap, place, stretch } = nodal_values(&faces);
+    let MeanAtNode { gap, place, stretch } = nodal_values(&faces);
     let whole = gap.times(normal) + place.times(along * stretch.value);
-    let mut met = Met::default();
+    let mut met = MetNodes::default();
     for face in covered {
         let pieces = face.pieces.iter().flat_map(|piece| piece.nodes);
         for node in face.nodes.into_iter().chain(pieces) {
@@ -39,7 +41,7 @@ pub(super) fn each(covered: &[Covered], [along, normal]: [f64; 2], add: &mut dyn
         }
     }
     let size = 2 * met.nodes.len();
-    let mut local = Local { met, size, values: vec![0.0; size * size] };
+    let mut local = LocalMatrix { met, size, values: vec![0.0; size * size] };
     by_variables(covered, &whole, &mut local);
     for (face, weights) in covered.iter().zip(whole.gradient.chunks_exact(OF_FACE)) {
         of_length(face, weights[MOMENTS], &mut local);
@@ -66,7 +68,7 @@ pub(super) fn each(covered: &[Covered], [along, normal]: [f64; 2], add: &mut dyn
 }
 
 /// `Jᵀ H J` with the Jacobian `J` of the variables of the faces.
-fn by_variables(covered: &[Covered], whole: &WithHessian<VARIABLES>, local: &mut Local) {
+fn by_variables(covered: &[CoveredFace], whole: &WithHessian<VARIABLES>, local: &mut LocalMatrix) {
     let size = local.size;
     let count = covered.len() * OF_FACE;
     let mut jacobian = vec![0.0; count * size];
@@ -94,7 +96,7 @@ fn by_variables(covered: &[Covered], whole: &WithHessian<VARIABLES>, local: &mut
 }
 
 /// The second derivative of the length of a face.
-fn of_length(face: &Covered, weight: f64, local: &mut Local) {
+fn of_length(face: &CoveredFace, weight: f64, local: &mut LocalMatrix) {
     let normal = turned_left(face.along);
     let places = face.nodes.map(|node| 2 * local.met.place(node));
     for (i, row) in places.into_iter().enumerate() {
@@ -108,7 +110,7 @@ fn of_length(face: &Covered, weight: f64, local: &mut Local) {
 }
 
 /// The second derivatives of the moments of a piece by the positions of its nodes and the face's.
-fn of_piece(face: &Covered, piece: &Piece, weights: &[f64], local: &mut Local) {
+fn of_piece(face: &CoveredFace, piece: &CoveringPiece, weights: &[f64], local: &mut LocalMatrix) {
     let variables = std::array::from_fn(|k| WithHessian::<5>::variable(piece.values[k], k));
     let moments = moments(&variables, piece.along, piece.goes_on, face.at.from);
     let mut sum = WithHessian::<5>::constant(0.0);
@@ -140,7 +142,7 @@ fn of_piece(face: &Covered, piece: &Piece, weights: &[f64], local: &mut Local) {
 
 /// The second derivatives of `s = q·d/L` and `h = d × q/L` of a node, with `d` along the face and `q` from its first
 /// node, times the slopes by these.
-fn of_coordinates(face: &Covered, [s, h]: [f64; 2], node: usize, [by_s, by_h]: [f64; 2], local: &mut Local) {
+fn of_coordinates(face: &CoveredFace, [s, h]: [f64; 2], node: usize, [by_s, by_h]: [f64; 2], local: &mut LocalMatrix) {
     let normal = turned_left(face.along);
     let vector = face.along.map(|part| part * face.length);
     let from_first = [0, 1].map(|k| s * face.along[k] + h * normal[k]);

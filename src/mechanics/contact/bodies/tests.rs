@@ -180,8 +180,8 @@ fn a_closed_surface_has_no_seam() {
         Arc::new(MortarNode::new(13, [Some(12), Some(14)], Arc::clone(&surface), place)),
         Arc::new(NodeToSurface::new(13, place(13), surface)),
     ];
-    // The smoothed surface is shorter than the polygon.
-    for (contact, tolerance) in contacts.into_iter().zip([5e-3, 5e-2]) {
+    // Slips are measured along the own face, to which the polygon is inclined, and on a smoothed polygon, which is shorter.
+    for contact in contacts {
         let turned = |angle: f64| -> Vec<f64> {
             let each = contact.nodes().iter().flat_map(|node| {
                 let ([x, y], [sine, cosine]) = (place(*node), [angle.sin(), angle.cos()]);
@@ -199,7 +199,7 @@ fn a_closed_surface_has_no_seam() {
             total += motion[0];
         }
         let length = 12.0 * 2.0 * (std::f64::consts::PI / 12.0).sin();
-        assert!((total + length).abs() <= tolerance * length, "{total} {length}");
+        assert!((total + length).abs() <= 5e-2 * length, "{total} {length}");
     }
 }
 

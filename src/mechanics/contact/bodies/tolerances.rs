@@ -4,9 +4,16 @@
 /// of the mean would be larger than 1e-6.
 pub(super) const LEAST_COVERED: f64 = 1e-8;
 
+/// A face of the opposite surface that is behind by more than this part of the own face is not in front of it: it belongs to
+/// the far side of a body.
+pub(super) const DEEPEST: f64 = 0.5;
+
 /// The part of a face that is still covered where a node counts as at the end of the surface that it touches: above
 /// [`LEAST_COVERED`], so that the end is found before the contact is lost.
 pub(super) const LAST_COVERED: f64 = 1e-6;
+
+/// Distances that differ by less than this part count as equal: those of two faces from a point off their common corner.
+pub(super) const SAME_DISTANCE: f64 = 1e-9;
 
 /// Newton's method for the closest point ends at a correction below this (in lengths of faces).
 pub(super) const CLOSEST_POINT: f64 = 1e-15;
