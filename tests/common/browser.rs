@@ -171,7 +171,8 @@ impl Browser {
             }
             let asked = told["message"]["params"]["request"]["url"].as_str().expect("an address").to_owned();
             // What the browser has within itself goes nowhere, its own first page among it.
-            let is_within = ["data:", "blob:", "chrome:", "chrome-untrusted:"].iter().any(|scheme| asked.starts_with(scheme));
+            let is_within =
+                ["data:", "blob:", "chrome:", "chrome-untrusted:"].iter().any(|scheme| asked.starts_with(scheme));
             assert!(is_within || asked.starts_with(&format!("{url}/")), "{asked}");
             requests += 1;
         }

@@ -1,6 +1,7 @@
 //! The posted model with indices instead of names, so that the check of an increment needs no look-ups.
 
 use crate::check::measure::bodies::MeasuredBody;
+use crate::check::measure::bodies::surface::TouchedSurfaces;
 use crate::check::measure::elements::MeasuredElement;
 use crate::check::measure::numbers::{MeasuredVector, largest, padded};
 use crate::check::measure::obstacles::{MeasuredFrame, MeasuredObstacle};
@@ -110,10 +111,11 @@ impl Posted {
         };
         let moved = model.stages.iter().flat_map(|stage| stage.obstacle_motion.keys());
         let moving: IndexSet<&str> = moved.map(String::as_str).collect();
+        let touched = TouchedSurfaces::new(model);
         let contact = |contact: &crate::model::request::Contact| {
             let node = model.nodes.get_index_of(&contact.node)?;
             let friction = contact.friction;
-            if let Some(body) = MeasuredBody::new(model, contact) {
+            if let Some(body) = MeasuredBody::new(model, contact, &touched) {
                 return Some(PostedContact {
                     node,
                     counterpart: Counterpart::Body(Box::new(body)),
@@ -219,7 +221,13 @@ impl Posted {
                 let obstacle = &self.obstacles[*obstacle];
                 obstacle.frame(self.dimension, &loading.shift(contact), place, &displacements[contact.node])
             }
-            Counterpart::Body(body) => body.frame(body.gap(displacements), displacements),
+            // In the axes of the surface that is touched.
+            Counterpart::Body(body) => MeasuredFrame {
+                gap: body.gap(displacements),
+                rounding: body.rounding(displacements),
+                normal: MeasuredVector::y(),
+                tangents: [MeasuredVector::x(), MeasuredVector::zeros()],
+            },
         }
     }
 

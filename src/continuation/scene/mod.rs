@@ -36,6 +36,7 @@ use crate::resources::budget::{self, Breach, Budget};
 use crate::result::nodal_values::NodalValues;
 use crate::result::plan::Plan;
 use build::{Contacts, ScaledModel, build_contacts, build_stage, build_structure, first_contacts};
+use indexmap::IndexSet;
 use recorded_forces::RecordedForces;
 pub(crate) use requested_contacts::Reported;
 use scales::{RequestScales, scales};
@@ -77,13 +78,24 @@ pub(crate) struct AdditionalParts {
     pub contacts: Vec<(&'static str, &'static str, ContactPair)>,
 }
 
-/// Adds what contacts of several nodes couple to the layout of the tangent.
+/// Adds what contacts of several nodes couple to the layout of the tangent: the own nodes of each with all that move it,
+/// and the nodes of the surface that it touches with each other, once for each surface.
 fn couple(structure: &mut Structure, contacts: &[ContactPair]) {
-    let coupled = contacts.iter().filter(|contact| contact.kinematics.node().is_none());
-    let couplings: Vec<Vec<usize>> = coupled.map(|contact| contact.kinematics.nodes().to_vec()).collect();
-    if !couplings.is_empty() {
-        structure.couple(couplings);
+    let coupled: Vec<&ContactPair> = contacts.iter().filter(|contact| contact.kinematics.node().is_none()).collect();
+    if coupled.is_empty() {
+        return;
     }
+    let opposite = |contact: &&ContactPair| {
+        let (own, all) = (contact.kinematics.own_nodes().len(), contact.kinematics.nodes());
+        all[own..].to_vec()
+    };
+    let touched: IndexSet<Vec<usize>> = coupled.iter().map(opposite).collect();
+    let own = coupled.iter().map(|contact| {
+        let kinematics = &contact.kinematics;
+        [kinematics.own_nodes().to_vec(), kinematics.nodes().to_vec()]
+    });
+    let couplings = own.chain(touched.into_iter().map(|nodes| [nodes.clone(), nodes])).collect();
+    structure.couple(couplings);
 }
 
 /// Zero displacements of all nodes, with the rotations of those that have one.

@@ -57,8 +57,9 @@ pub struct Structure {
     /// The elements at the nodes, node by node, and the index of the first of each node.
     elements_at: Vec<usize>,
     first_at: Vec<usize>,
-    /// Groups of nodes whose degrees of freedom are coupled otherwise than by elements.
-    couplings: Vec<Vec<usize>>,
+    /// Pairs of groups of nodes whose degrees of freedom are coupled otherwise than by elements, each node of one with each
+    /// of the other.
+    couplings: Vec<[Vec<usize>; 2]>,
     layout: Option<Arc<Layout>>,
     /// The nodes that turn freely in space.
     pub turning: TurningNodes,
@@ -173,8 +174,8 @@ impl Structure {
     }
 
     /// Adds entries to the layout of the tangent for degrees of freedom that are coupled otherwise than by elements;
-    /// each coupling is a list of nodes.
-    pub fn couple(&mut self, couplings: Vec<Vec<usize>>) {
+    /// each coupling is of every node of one list with every node of another.
+    pub fn couple(&mut self, couplings: Vec<[Vec<usize>; 2]>) {
         self.couplings = couplings;
         self.set_sparse(self.layout.is_some());
     }

@@ -37,7 +37,10 @@ impl Layout {
             pairs.flat_map(|[first, second]| block(of_node(*first), of_node(*second))).collect()
         };
         let by_elements = structure.elements().flat_map(|at| between(at.element.nodes()));
-        let by_others = structure.couplings.iter().flat_map(|nodes| between(nodes));
+        let by_others = structure.couplings.iter().flat_map(|[first, second]| {
+            let pairs = first.iter().cartesian_product(second).filter(|(one, other)| one != other);
+            pairs.flat_map(|(one, other)| block(of_node(*one), of_node(*other)))
+        });
         let pattern = Pattern::new(structure.unknowns(), own.chain(by_elements).chain(by_others))?;
         if u32::try_from(pattern.entries()).is_err() {
             return None;

@@ -5,6 +5,7 @@ use std::collections::{HashMap, HashSet};
 use crate::model::check::numbers::{self, dot};
 use crate::model::check::obstacles::{Curves, Facing, facing};
 use crate::model::check::scope::Scope;
+use crate::model::input::limits::MAX_COUPLED_PAIRS;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{quoted, suggestion};
 use crate::model::request::{Contact, Obstacle, Polyline, Side};
@@ -29,6 +30,16 @@ pub(super) fn contacts(scope: &Scope, curves: &Curves, mistakes: &mut Mistakes) 
     let at = scope.at.member("contacts");
     let mut seen = HashSet::new();
     let mut gaps: HashMap<usize, Vec<Gap>> = HashMap::new();
+    let pairs = coupled_pairs(scope);
+    if pairs > MAX_COUPLED_PAIRS {
+        mistakes.add(&at, || {
+            format!(
+                "contacts of bodies couple {pairs} pairs of nodes; at most {MAX_COUPLED_PAIRS} are taken: name only the faces \
+                 that may touch"
+            )
+        });
+        return;
+    }
     let surfaces = ContactSurfaces::new(scope.model, 1.0);
     let (mut touching, mut pairs) = (HashSet::new(), HashSet::new());
     for (index, contact) in scope.model.contacts.iter().enumerate() {
@@ -76,6 +87,16 @@ pub(super) fn contacts(scope: &Scope, curves: &Curves, mistakes: &mut Mistakes) 
     }
 }
 
+/// The pairs of nodes that contacts of bodies couple: of each the three nodes on its own side with the surface that it
+/// touches, and the nodes of such a surface with each other.
+fn coupled_pairs(scope: &Scope) -> usize {
+    let nodes = |name: &str| scope.model.surfaces.get(name).map_or(0, |surface| surface.faces.len() + 1);
+    let against: Vec<&str> = scope.model.contacts.iter().filter_map(|contact| contact.against.as_deref()).collect();
+    let touched: HashSet<&str> = against.iter().copied().collect();
+    let by_contacts = against.iter().fold(0_usize, |sum, name| sum.saturating_add(3 * nodes(name)));
+    touched.into_iter().fold(by_contacts, |sum, name| sum.saturating_add(nodes(name).saturating_mul(nodes(name)) / 2))
+}
+
 fn between_bodies(
     scope: &Scope,
     surfaces: &ContactSurfaces,
@@ -84,7 +105,6 @@ fn between_bodies(
     at: &DocumentPlace,
     mistakes: &mut Mistakes,
 ) {
-    budget::spend(1);
     for (member, name) in [("surface", contact.surface.as_deref()), ("against", contact.against.as_deref())] {
         let Some(name) = name.filter(|name| !scope.model.surfaces.contains_key(*name)) else { continue };
         mistakes.add(&at.member(member), || {

@@ -292,12 +292,12 @@ impl<'a> Groups<'a> {
         for (index, mut contact) in given.into_iter().enumerate() {
             let place = at.index(index);
             let member = if contact.names_whole_surface() { "surface" } else { "node" };
-            if contact.names_whole_surface()
-                && let Some(surface) = &contact.surface
-            {
-                contact.node = format!("@{surface}");
-                // Which faces a node is part of matters to what other bodies it touches.
-                contact.surface = contact.surface.take_if(|_| contact.against.is_some());
+            if contact.names_whole_surface() {
+                contact.node = format!("@{}", contact.surface.as_deref().unwrap_or_default());
+                // Where bodies touch each other the faces at a node matter.
+                if contact.against.is_none() {
+                    contact.surface = None;
+                }
             }
             match self.members(&contact.node, &place.member(member), mistakes) {
                 Members::Own => all.push(contact),

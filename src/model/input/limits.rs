@@ -21,6 +21,8 @@ pub const MAX_POLYLINE_POINTS: usize = 2_000;
 pub const MAX_POINTS_OF_POLYLINES: usize = 20_000;
 /// Contacts of a model.
 pub const MAX_CONTACTS: usize = 20_000;
+/// Pairs of nodes that contacts of bodies may couple: each takes some 100 bytes while the layout of the tangent is made.
+pub const MAX_COUPLED_PAIRS: usize = 2_000_000;
 /// Number of nodes that names of sets and surfaces stand for in a request, counted as often as they are named.
 pub const MAX_NAMED_NODES: usize = 1_000_000;
 /// Up to this number of contacts an increment has a row for each. With more contacts, those out of reach have none unless

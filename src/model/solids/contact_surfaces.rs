@@ -9,12 +9,16 @@ use crate::model::input::limits::PENETRATION_TOLERANCE;
 use crate::model::input::names::quoted;
 use crate::model::request::{Contact, ContactDiscretisation, Element, Model, PlaneCondition};
 use crate::model::solids::faces::{FaceMatch, surface_faces};
+use crate::resources::budget;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// A penetration at the start of up to this part of a face's length is that of the mesh: round bodies whose meshes do not
 /// match overlap by about an eighth of the square of an angle between faces.
 const MESHED_PENETRATION: f64 = 0.05;
+
+/// How often a surface is gone through for each of its contacts.
+const GONE_THROUGH: usize = 10;
 
 /// The surfaces that contacts of bodies name.
 pub(crate) struct ContactSurfaces<'a> {
@@ -129,6 +133,8 @@ impl<'a> ContactSurfaces<'a> {
         let against = contact.against.as_deref().unwrap_or_default();
         let opposite = self.find(against, "against")?;
         let touched = Arc::clone(&opposite);
+        // The whole surface is gone through several times.
+        budget::spend(GONE_THROUGH * opposite.faces.len());
         let name = || quoted(&contact.node).to_string();
         if opposite.nodes.contains(&node) {
             let why = format!(

@@ -120,3 +120,37 @@ fn what_makes_no_contact_of_bodies_is_refused_with_its_place() {
         &["below"],
     );
 }
+
+/// Two strings of bars over each other, of so many nodes that their contacts would couple millions of pairs of nodes: refused
+/// before anything of that size is made.
+#[test]
+fn contacts_of_very_many_nodes_are_refused_at_once() {
+    let count = 3_000;
+    let (mut nodes, mut elements) = (serde_json::Map::new(), Vec::new());
+    let mut surfaces = json!({});
+    for (string, height) in [("low", 0.0), ("high", 1.0)] {
+        let names: Vec<String> = (0..count).map(|k| format!("{string}{k}")).collect();
+        for (k, name) in names.iter().enumerate() {
+            nodes.insert(name.clone(), json!([k, height]));
+        }
+        let bars = names.windows(2).map(|ends| json!({"kind": "bar", "nodes": ends, "axial_stiffness": 1}));
+        elements.extend(bars);
+        // The free side of the upper string is below it.
+        let ends = names
+            .windows(2)
+            .map(|ends| if string == "low" { vec![&ends[0], &ends[1]] } else { vec![&ends[1], &ends[0]] });
+        surfaces[string] = json!({"faces": ends.collect::<Vec<_>>()});
+    }
+    let supports: serde_json::Map<String, Value> = nodes.keys().map(|name| (name.clone(), json!(["y"]))).collect();
+    let posted = json!({"model": {
+        "dimension": 2, "nodes": nodes, "elements": elements, "supports": supports, "surfaces": surfaces,
+        "contacts": [{"surface": "high", "against": "low"}],
+        "stages": [{"name": "pull", "forces": {"low5": [1, 0]}}]
+    }});
+    let errors = match arcslip::model::decode::decode(posted.to_string().as_bytes()) {
+        Err(errors) => errors,
+        Ok(request) => arcslip::continuation::scene::Scene::new(&request).map(|_| ()).expect_err("too many"),
+    };
+    let found = errors.0.iter().find(|error| error.pointer == "/model/contacts").expect("a mistake of contacts");
+    assert!(found.detail.contains("at most 2000000 are taken"), "{}", found.detail);
+}

@@ -94,7 +94,7 @@ impl CoveredFace {
     }
 }
 
-/// LocalMatrix numbers of degrees of freedom, in the order in which they are met.
+/// Local numbers of nodes, in the order in which they are met.
 #[derive(Default)]
 pub(super) struct MetNodes {
     pub(super) nodes: SmallVec<[usize; 12]>,

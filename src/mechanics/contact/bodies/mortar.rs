@@ -73,11 +73,6 @@ impl MortarNode {
         self.start.0
     }
 
-    /// Whether the opposite surface covers a part of the node's faces, without displacements.
-    pub fn is_covered(&self) -> bool {
-        !self.covered(&|_| 0.0).is_empty()
-    }
-
     /// The present position of a node by its index into `nodes`.
     fn position(&self, displacement: LocalDisplacements<'_>, node: usize) -> PlaneVector {
         let own = self.places.len();

@@ -2,16 +2,19 @@
 //! projected nodes and the mass matrix of the covered part, the nearest point of a smoothed surface by sampling and
 //! bisection; derivatives by dual numbers, one degree of freedom at a time.
 
-use crate::check::measure::numbers::DualNumber;
-use crate::check::measure::numbers::{MeasuredVector, largest, padded};
-use crate::check::measure::obstacles::MeasuredFrame;
-use crate::model::request::{Contact, ContactDiscretisation, Element, Model};
-use std::collections::HashMap;
+pub(super) mod surface;
+
+use crate::check::measure::bodies::surface::{OppositeFace, TouchedSurfaces};
+use crate::check::measure::numbers::{DualNumber, MeasuredVector, largest};
+use crate::model::request::{Contact, ContactDiscretisation, Model};
+use std::sync::Arc;
 
 /// Parts of a face that are covered over less than this part of its length count as not covered.
 const COVERED: f64 = 1e-8;
 /// Faces that are behind by more than this part of the own face belong to the far side of a body.
 const FAR_BEHIND: f64 = 0.5;
+/// Roundings of coordinates in a gap.
+const ROUNDINGS: f64 = 64.0;
 /// Samples on each face when a nearest point is sought, and bisections from the best of them.
 const SAMPLES: usize = 16;
 const BISECTIONS: usize = 60;
@@ -30,23 +33,13 @@ pub(super) struct MeasuredBody {
     faces: Vec<[usize; 2]>,
     node: usize,
     /// Faces of the opposite surface in order, with their coordinates along it and the length of a closed chain.
-    opposite: Vec<OppositeFace>,
-    /// Undeformed places of the nodes that matter.
-    places: HashMap<usize, MeasuredVector>,
+    opposite: Arc<[OppositeFace]>,
+    /// Undeformed places of all nodes.
+    places: Arc<[MeasuredVector]>,
     /// Gap at the start, where it is negative: the meshes overlap, and the contact is closed.
     overlap: f64,
+    /// The largest undeformed coordinate of a node that matters.
     reach: f64,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct OppositeFace {
-    nodes: [usize; 2],
-    along: [f64; 2],
-    /// Faces before and after, as indices.
-    beside: [Option<usize>; 2],
-    period: Option<f64>,
-    /// PlaneNumber of its chain: the index of the chain's first face.
-    chain: usize,
 }
 
 /// The contact at a state.
@@ -79,76 +72,6 @@ struct MeasuredGap {
     period: Option<f64>,
 }
 
-/// The faces of a surface with their free side on the left, by numbers of nodes.
-fn lines(model: &Model, name: &str) -> Vec<[usize; 2]> {
-    let number = |name: &String| model.nodes.get_index_of(name);
-    let surface = model.surfaces.get(name);
-    let faces = surface.into_iter().flat_map(|surface| &surface.faces);
-    let oriented = |face: &Vec<String>| {
-        let [first, last] = face.as_slice() else { return None };
-        let solid = model.elements.iter().filter_map(Element::solid).map(|(_, solid)| &solid.nodes);
-        // A solid has its corners counter-clockwise: seen along its boundary, the free side is on the right.
-        let follows = |nodes: &Vec<String>, one: &String, other: &String| {
-            let at = nodes.iter().position(|node| node == one);
-            at.is_some_and(|at| nodes[(at + 1) % nodes.len()] == *other)
-        };
-        let turn = solid.into_iter().find_map(|nodes| {
-            if follows(nodes, first, last) { Some(true) } else { follows(nodes, last, first).then_some(false) }
-        });
-        let [first, last] = [number(first)?, number(last)?];
-        Some(if turn == Some(true) { [last, first] } else { [first, last] })
-    };
-    faces.filter_map(oriented).collect()
-}
-
-fn distance(model: &Model, nodes: [usize; 2]) -> f64 {
-    let [first, last] =
-        nodes.map(|node| model.nodes.get_index(node).map_or(MeasuredVector::zeros(), |(_, at)| padded(at)));
-    (last - first).norm()
-}
-
-/// The faces of the opposite surface, with what lies beside them and the coordinates along them.
-fn opposite(model: &Model, lines: &[[usize; 2]]) -> Vec<OppositeFace> {
-    let ending: HashMap<usize, usize> = lines.iter().enumerate().map(|(index, line)| (line[1], index)).collect();
-    let beginning: HashMap<usize, usize> = lines.iter().enumerate().map(|(index, line)| (line[0], index)).collect();
-    let mut along = vec![None; lines.len()];
-    let mut periods = vec![None; lines.len()];
-    let mut chains = vec![0; lines.len()];
-    for start in 0..lines.len() {
-        if along[start].is_some() {
-            continue;
-        }
-        let mut first = start;
-        while let Some(before) = ending.get(&lines[first][0]).filter(|before| **before != start) {
-            first = *before;
-        }
-        let (mut face, mut from, mut chain) = (first, 0.0, Vec::new());
-        let closed = loop {
-            let to = from + distance(model, lines[face]);
-            along[face] = Some([from, to]);
-            chains[face] = first;
-            chain.push(face);
-            from = to;
-            match beginning.get(&lines[face][1]) {
-                Some(next) if *next == first => break true,
-                Some(next) => face = *next,
-                None => break false,
-            }
-        };
-        chain.into_iter().filter(|_| closed).for_each(|face| periods[face] = Some(from));
-    }
-    let beside = |line: &[usize; 2]| [ending.get(&line[0]).copied(), beginning.get(&line[1]).copied()];
-    let all = lines.iter().zip(along).zip(periods).zip(chains);
-    all.map(|(((nodes, along), period), chain)| OppositeFace {
-        nodes: *nodes,
-        along: along.unwrap_or_default(),
-        beside: beside(nodes),
-        period,
-        chain,
-    })
-    .collect()
-}
-
 /// A coordinate moved by whole turns to near another one.
 fn near(period: Option<f64>, from: f64, to: f64) -> f64 {
     period.map_or(to, |period| to - period * ((to - from) / period).round())
@@ -156,29 +79,29 @@ fn near(period: Option<f64>, from: f64, to: f64) -> f64 {
 
 impl MeasuredBody {
     /// The contact of a checked model; `None` where it is none of bodies.
-    pub fn new(model: &Model, contact: &Contact) -> Option<Self> {
+    pub fn new(model: &Model, contact: &Contact, surfaces: &TouchedSurfaces) -> Option<Self> {
         let against = contact.against.as_deref()?;
         let node = model.nodes.get_index_of(&contact.node)?;
-        let faces = match (contact.discretisation.unwrap_or_default(), contact.surface.as_deref()) {
-            (ContactDiscretisation::Mortar, Some(surface)) => {
-                lines(model, surface).into_iter().filter(|line| line.contains(&node)).collect()
+        let lines = contact.surface.as_deref().and_then(|surface| surfaces.lines.get(surface));
+        let faces = match contact.discretisation.unwrap_or_default() {
+            ContactDiscretisation::Mortar => {
+                lines.into_iter().flatten().filter(|line| line.contains(&node)).copied().collect()
             }
-            _ => Vec::new(),
+            ContactDiscretisation::NodeToSurface => Vec::new(),
         };
-        let opposite = opposite(model, &lines(model, against));
-        let numbers = faces.iter().flatten().chain(opposite.iter().flat_map(|face| &face.nodes));
-        let places: HashMap<usize, MeasuredVector> =
-            numbers.chain([&node]).filter_map(|node| Some((*node, padded(model.nodes.get_index(*node)?.1)))).collect();
-        let reach = places.values().map(largest).fold(0.0, f64::max);
+        let opposite = Arc::clone(surfaces.faces.get(against)?);
+        let places = Arc::clone(&surfaces.places);
+        let reach = opposite.iter().flat_map(|face| face.nodes).chain([node]).map(|node| largest(&places[node]));
+        let reach = reach.fold(0.0, f64::max);
         let mut body = Self { faces, node, opposite, places, overlap: 0.0, reach };
-        let still = vec![MeasuredVector::zeros(); model.nodes.len()];
+        let still = &surfaces.no_displacements;
         // Past the end of the surface there is no contact yet.
-        body.overlap = if body.open_gap(&still) > 0.0 { 0.0 } else { body.gap(&still).min(0.0) };
+        body.overlap = if body.open_gap(still) > 0.0 { 0.0 } else { body.gap(still).min(0.0) };
         Some(body)
     }
 
     fn place(&self, node: usize) -> MeasuredVector {
-        self.places.get(&node).copied().unwrap_or_else(MeasuredVector::zeros)
+        self.places[node]
     }
 
     /// The contact at displacements.
@@ -259,15 +182,9 @@ impl MeasuredBody {
         beside.flat_map(|beside| self.opposite[beside].nodes).chain(face.nodes).collect()
     }
 
-    /// A frame with the axes of the opposite surface: its tangent first, its normal second.
-    pub fn frame(&self, gap: f64, displacements: &[MeasuredVector]) -> MeasuredFrame {
-        let reach = self.places.keys().map(|node| largest(&displacements[*node])).fold(self.reach, f64::max);
-        MeasuredFrame {
-            gap,
-            rounding: 64.0 * f64::EPSILON * reach,
-            normal: MeasuredVector::y(),
-            tangents: [MeasuredVector::x(), MeasuredVector::zeros()],
-        }
+    /// Rounding error of the gap due to the coordinates.
+    pub fn rounding(&self, displacements: &[MeasuredVector]) -> f64 {
+        ROUNDINGS * f64::EPSILON * self.reach.max(largest(&displacements[self.node]))
     }
 
     /// What of the opposite surface is in front of the node.
@@ -333,7 +250,7 @@ impl MeasuredBody {
         };
         let mut least = f64::INFINITY;
         for own in &self.faces {
-            for other in &self.opposite {
+            for other in self.opposite.iter() {
                 least = own.iter().fold(least, |least, node| least.min(from_line(position(*node), other.nodes)));
                 least = other.nodes.iter().fold(least, |least, node| least.min(from_line(position(*node), *own)));
             }
@@ -551,7 +468,7 @@ impl BodyState {
     }
 }
 
-/// MeasuredGap and slopes of the cubic B-spline's functions on a face; beyond an end of the surface those of a straight line.
+/// Values and slopes of the cubic B-spline's functions on a face; beyond an end of the surface those of a straight line.
 fn weights(t: PlaneNumber, ends: [bool; 2]) -> [[PlaneNumber; 4]; 2] {
     let bounded = if ends[0] && t.0 < 0.0 {
         PlaneNumber::constant(0.0)
