@@ -144,16 +144,17 @@ pub use mechanics::structure::elements::bar::Strain;
 pub use model::decode::expanded;
 pub use model::request::{
     Analysis, ArcLength, Certificate, Component, Contact, ContactDiscretisation, ContactRange, ContentEncoding,
-    DisplacementBound, ElasticConstants, Element, ElementReference, Events, Explore, ForceRange, JobRequest, LoadSign,
-    LockingMend, Material, MeshFile, MeshFormat, MeshGroup, Method, Model, Mpec, NamedSet, Obstacle, PlaneCondition,
-    Polyline, Record, RecordedContact, RecordedContacts, RecordedElements, RecordedSupports, Regularised, Side, Solid,
-    SolidKind, Stage, Surface, Units, Until,
+    DisplacementBound, ElasticConstants, Element, ElementReference, Events, Explore, ForceRange, JobRequest,
+    JumpMotion, JumpMotionKind, LoadSign, LockingMend, Material, MeshFile, MeshFormat, MeshGroup, Method, Model, Mpec,
+    NamedSet, Obstacle, OnPathEnd, PlaneCondition, Polyline, Record, RecordedContact, RecordedContacts,
+    RecordedElements, RecordedSupports, Regularised, Side, Solid, SolidKind, Stage, StageControl, Surface, Units,
+    Until,
 };
 pub use model::{InputError, InputErrors, read};
 pub use resources::cancel::CancelFlag;
 pub use result::increment::{
-    ContactState, Diagnostics, Direction, ElementState, Energy, Increment, Point, PointKind, SpaceVector, Status,
-    Tangential,
+    ContactState, DeadLoadStability, Diagnostics, Direction, ElementState, Energy, Increment, Instability, Point,
+    PointKind, SpaceVector, Stability, Status, Tangential,
 };
 pub use result::nodal_values::NodalValues;
 pub use result::plan::{LeftOut, Plan};

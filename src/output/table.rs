@@ -186,7 +186,7 @@ impl Table {
             names.extend(node.names(".reaction", self.dimension));
         }
         names.extend(axes().map(|axis| format!("applied_force_{axis}")));
-        names.extend(["external_work", "strain_energy", "dissipated"].map(str::to_owned));
+        names.extend(["external_work", "strain_energy", "dissipated", "released"].map(str::to_owned));
         names.extend(["elapsed_s", "residual", "complementarity", "energy_error", "error_estimate"].map(str::to_owned));
         names.extend(counts(&Diagnostics::default()).map(|(name, _)| name.to_owned()));
         names.extend(Errors::NAMES.map(|name| format!("measure.{name}")));
@@ -269,7 +269,7 @@ impl Table {
         }
         line.numbers(&increment.applied_forces, self.dimension);
         let (energy, diagnostics) = (&increment.energy, &increment.diagnostics);
-        for value in [energy.external_work, energy.strain, energy.dissipated] {
+        for value in [energy.external_work, energy.strain, energy.dissipated, energy.released] {
             line.number(value);
         }
         for value in [
@@ -319,5 +319,7 @@ pub(crate) fn point_kind(kind: PointKind) -> &'static str {
         PointKind::SmoothBifurcation => "smooth_bifurcation",
         PointKind::ContactChange => "contact_change",
         PointKind::End => "end",
+        PointKind::Jump => "jump",
+        PointKind::Motion => "motion",
     }
 }

@@ -44,6 +44,9 @@ pub struct Increment {
     /// Feasible one-sided directions, the one taken among them; present where there is a choice.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub directions: Option<Vec<Direction>>,
+    /// Whether the state is stable; where `analysis.record.stability` asks for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stability: Option<Stability>,
     /// Energies from the start of the path.
     pub energy: Energy,
     /// Accuracy of this point, and work from the start of the path.
@@ -247,6 +250,10 @@ pub enum PointKind {
     ContactChange,
     /// The end of a stage.
     End,
+    /// A state at rest to which the structure has jumped at a constant load.
+    Jump,
+    /// A state of the motion of a jump, not at rest (`jump_motion.keep_steps`).
+    Motion,
 }
 
 /// A feasible one-sided direction of the path.
@@ -269,6 +276,46 @@ pub struct Direction {
     pub mechanism: bool,
 }
 
+/// Whether the state of an increment is stable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Stability {
+    /// Negative eigenvalues of the tangent in the contact mode of the increment, those with a negative real part where slip
+    /// against friction or a following load makes it unsymmetric; absent where they are not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub negative_eigenvalues: Option<u64>,
+    /// Whether the state stays while the load does.
+    pub dead_load: DeadLoadStability,
+    /// How the state is left, where it is unstable in some sense.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub instability: Option<Instability>,
+}
+
+/// Stability under a load that stays, by the directional criterion of frictional contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum DeadLoadStability {
+    /// No admissible motion grows.
+    Stable,
+    /// An admissible motion grows.
+    Unstable,
+    /// Neither was shown.
+    Unknown,
+}
+
+/// How a state is left that is not stable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Instability {
+    /// A motion grows in one sense.
+    Divergence,
+    /// Two eigenvalues are a complex pair: without damping, the motion in the contact mode of the increment swings with a
+    /// growing amplitude.
+    Flutter,
+}
+
 /// Totals from the start of the path.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
@@ -279,6 +326,14 @@ pub struct Energy {
     pub strain: f64,
     /// Energy dissipated by friction (force times length).
     pub dissipated: f64,
+    /// Energy given off by the motion of jumps (force times length): what loads and strain energy gave and friction did not
+    /// take. Absent where there was no jump.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub released: f64,
+}
+
+fn is_none(energy: &f64) -> bool {
+    *energy == 0.0
 }
 
 /// Accuracy of an increment, and totals of work up to it.
@@ -291,7 +346,7 @@ pub struct Diagnostics {
     pub residual: f64,
     /// Largest violation of contact and friction, dimensionless.
     pub complementarity: f64,
-    /// `|external work - strain - dissipated|` over the largest energy so far.
+    /// `|external work - strain - dissipated - released|` over the largest energy so far.
     pub energy_error: f64,
     /// Estimated error of this point (dimensionless displacement).
     pub error_estimate: f64,

@@ -19,7 +19,7 @@ pub struct Report {
     pub largest_residual: f64,
     /// Largest violation of contact and friction, dimensionless.
     pub largest_complementarity: f64,
-    /// Largest `|external work - strain - dissipated|` over the largest energy up to there.
+    /// Largest `|external work - strain - dissipated - released|` over the largest energy up to there.
     pub largest_energy_error: f64,
     /// Factorisations of matrices.
     pub factorisations: u64,

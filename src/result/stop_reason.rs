@@ -15,6 +15,8 @@ pub enum StopReason {
     Mechanism,
     /// No quasi-static continuation exists.
     NoDirection,
+    /// The structure jumps and comes to rest nowhere.
+    NoEquilibrium,
     /// The path is back at a state it has been in.
     Cycle,
     /// No step of at least `arc_length.min` converges, or steps are so short that the path gets nowhere.
@@ -61,6 +63,7 @@ impl StopReason {
             Self::Cancelled => Outcome::Cancelled,
             Self::Mechanism
             | Self::NoDirection
+            | Self::NoEquilibrium
             | Self::Cycle
             | Self::StepUnderflow
             | Self::CollapsedBar
@@ -82,6 +85,10 @@ impl StopReason {
             Self::Mechanism => "what follows is a mechanism: a motion that no element resists",
             Self::NoDirection => {
                 "no quasi-static continuation exists: from here the structure can only move dynamically"
+            }
+            Self::NoEquilibrium => {
+                "the structure jumps and comes to rest in no stable state: not within jump_motion.max_steps, or it moves away \
+                 without end"
             }
             Self::Cycle => "the path is back at a state it has been in",
             Self::StepUnderflow => "no step of at least arc_length.min converges, or gets anywhere",

@@ -58,6 +58,7 @@ fn main() {
             supports: Some(RecordedSupports::Range(ForceRange::None)),
             every: 1_000,
             directions: false,
+            stability: false,
         });
         compare(name, "outputs (record)", &recorded, &scene(name));
     }

@@ -30,6 +30,7 @@ mod hidden_events;
 mod invariance;
 mod jammed_corners;
 mod judged;
+mod jumps;
 mod keep_all;
 mod limits_near_critical_friction;
 mod mac_mpec;

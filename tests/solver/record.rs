@@ -149,6 +149,7 @@ fn nodes_contacts_and_directions_are_cut_after_the_judgement() {
         supports: Some(RecordedSupports::Range(ForceRange::None)),
         every: 1_000,
         directions: false,
+        stability: false,
     };
     let bytes = |whole: &Whole| serde_json::to_string(&whole.increments).expect("written").len();
     assert!(4 * bytes(&whole(&recorded("arch-type-truss", nothing))) < bytes(&all));

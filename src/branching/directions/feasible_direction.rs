@@ -68,6 +68,8 @@ pub enum PriorMotion<'a> {
 #[derive(Debug, Clone, Copy)]
 pub struct Rules<'a> {
     pub selection: Selection,
+    /// Whether directions along which the load falls are taken only where there is no other.
+    pub load_rises: bool,
     pub effort: Effort<'a>,
     pub force_scale: f64,
 }

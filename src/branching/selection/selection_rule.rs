@@ -122,7 +122,12 @@ fn taken_of(
     push.iter_mut().zip(&loading.pattern.supports).for_each(|(sum, value)| *sum += value);
     let pushed = Rate { displacement: push, load: 0.0, reactions: Vec::new() };
     let previous = match before {
-        PriorMotion::Incoming(incoming) => incoming.rate,
+        PriorMotion::Incoming(incoming) => {
+            if rules.load_rises && open.iter().any(|&index| options[index].load_sign >= 0.0) {
+                open.retain(|&index| options[index].load_sign >= 0.0);
+            }
+            incoming.rate
+        }
         PriorMotion::StageStart => {
             if found.unexplored > 0 && open.iter().all(|&index| options[index].load_sign <= 0.0) {
                 // The load is to rise, and the mode in which it does may be among those not examined.
@@ -243,7 +248,7 @@ mod tests {
             for (load, index) in [(0.5, 1), (-0.5, 0)] {
                 let previous = Rate { displacement: vec![-0.3 * load, 0.8], load, reactions: Vec::new() };
                 let effort = Effort { most_modes: 1, certify: true, cancel: &cancel };
-                let rules = Rules { selection, effort, force_scale: 1.0 };
+                let rules = Rules { selection, load_rises: false, effort, force_scale: 1.0 };
                 assert_eq!(preferred(&options, &previous, rules, |_| true), Some(index));
             }
         }
@@ -256,7 +261,7 @@ mod tests {
         let cancel = CancelFlag::default();
         let taken = |selection| {
             let effort = Effort { most_modes: 1, certify: true, cancel: &cancel };
-            let rules = Rules { selection, effort, force_scale: 1.0 };
+            let rules = Rules { selection, load_rises: false, effort, force_scale: 1.0 };
             preferred(&options, &previous, rules, |_| true)
         };
         assert_eq!(taken(Selection::MaxDissipation), Some(0));

@@ -54,8 +54,9 @@ impl Alternatives {
         let largest = directions.iter().fold(0.0_f64, |largest, direction| largest.max(direction.load_rate.abs()));
         let same_stretch = increment.point.bifurcation == self.bifurcation
             && match increment.point.kind {
-                PointKind::Regular | PointKind::End => true,
+                PointKind::Regular | PointKind::End | PointKind::Motion => true,
                 PointKind::Start
+                | PointKind::Jump
                 | PointKind::SmoothLimit
                 | PointKind::NonsmoothLimit
                 | PointKind::SmoothBifurcation
@@ -131,6 +132,7 @@ mod tests {
             applied_forces: smallvec![],
             point: Point { kind, bifurcation, event, better_direction, unexplored_modes, degenerate },
             directions: Some(directions),
+            stability: None,
             energy: Energy::default(),
             diagnostics: Diagnostics::default(),
         }

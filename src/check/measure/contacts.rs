@@ -21,6 +21,8 @@ pub(super) struct Seen<'a> {
     /// `slip_total` of the increment before.
     pub slipped_before: [f64; 2],
     pub dimension: usize,
+    /// The increment is a motion under inertia or damping: its chord says nothing of friction on the way.
+    pub is_motion: bool,
     /// The force on the node, or on its surface where bodies touch.
     pub force: MeasuredVector,
 }
@@ -61,7 +63,9 @@ impl Seen<'_> {
         let on_the_cone = size > 0.0 && size >= (1.0 - ON_THE_CONE) * radius;
         let shrunk = if moves { slipped / distance } else { 0.0 };
         let slip_scaled = slip.map(|value| value * shrunk);
-        let off = if on_the_cone {
+        let off = if self.is_motion {
+            (size - radius.max(0.0)).max(0.0)
+        } else if on_the_cone {
             // Only the slip along the traction counts; on a curved path, `slip_direction` measures the slip across the
             // traction.
             let against = -(traction[0] * slip_scaled[0] + traction[1] * slip_scaled[1]) / size;
@@ -90,6 +94,7 @@ impl Seen<'_> {
         }
         let of_status = match state.status {
             Status::Free => size.max(normal.abs()),
+            Status::Stick | Status::Slip if self.is_motion => 0.0,
             Status::Stick => slipped,
             Status::Slip if friction > 0.0 && moves => (size - radius).abs(),
             Status::Slip => 0.0,
@@ -100,7 +105,8 @@ impl Seen<'_> {
             return None;
         }
         let direction = frame.in_space(traction) * (-1.0 / size);
-        if let (Status::Slip, true, Some(before)) = (state.status, moves, self.direction_before) {
+        if let (Status::Slip, true, Some(before), false) = (state.status, moves, self.direction_before, self.is_motion)
+        {
             errors.slip_direction = worse(errors.slip_direction, angle(&self.motion, &(before + direction)));
         }
         Some(direction)

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The version of the format. The version changes when the meaning of the data changes.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 
 /// The data of the previous point that the check of the next increment needs.
 #[derive(Debug, Clone)]
@@ -25,6 +25,8 @@ pub(super) struct PreviousPoint {
     /// Load factor in the current stage.
     pub load: f64,
     pub arc_length: f64,
+    /// Energy given off by jumps so far.
+    pub released: f64,
 }
 
 impl PreviousPoint {
@@ -37,6 +39,7 @@ impl PreviousPoint {
             slips: BTreeMap::new(),
             load: 0.0,
             arc_length: 0.0,
+            released: 0.0,
         }
     }
 }
@@ -51,6 +54,8 @@ pub struct JudgeHistory {
     reached: Vec<f64>,
     load: f64,
     arc_length: f64,
+    #[serde(default)]
+    released: f64,
     /// One displacement for each node.
     displacements: Vec<MeasuredVector>,
     /// One rotation vector for each node, then those of released ends; absent where there are none.
@@ -91,6 +96,7 @@ pub fn history_of(judge: &Judge) -> JudgeHistory {
         reached: judge.reached.clone(),
         load: judge.before.load,
         arc_length: judge.before.arc_length,
+        released: judge.before.released,
         displacements: judge.before.displacements.clone(),
         rotations: if judge.posted.has_rotations() { judge.before.rotations.clone() } else { Vec::new() },
         directions: judge.before.directions.iter().map(|(contact, direction)| (*contact, *direction)).collect(),
@@ -110,6 +116,7 @@ pub fn take_up(mut judge: Judge, history: JudgeHistory) -> Result<Judge, History
         reached,
         load,
         arc_length,
+        released,
         displacements,
         mut rotations,
         directions,
@@ -152,6 +159,7 @@ pub fn take_up(mut judge: Judge, history: JudgeHistory) -> Result<Judge, History
         shifts: loading.shifts.clone(),
         load,
         arc_length,
+        released,
         ..PreviousPoint::at_rest(posted)
     };
     before.directions.extend(directions);

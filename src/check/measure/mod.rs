@@ -72,7 +72,7 @@ pub use errors::{Errors, Largest, Maxima};
 pub use history::{HistoryError, JudgeHistory};
 
 use crate::model::JobRequest;
-use crate::result::increment::{ContactState, Increment};
+use crate::result::increment::{ContactState, Increment, PointKind};
 use apart::Apart;
 use contacts::Seen;
 use elements::{MeasuredElement, MeasuredResponse};
@@ -261,7 +261,9 @@ impl Judge {
         }
         let (strain, mut balance) = self.forces(increment);
         let force = self.largest_force.max(self.no_force);
-        errors.equilibrium = worse(0.0, self.unbalanced() / force);
+        // What is out of balance in a motion is the force of damping and inertia.
+        let moves = increment.point.kind == PointKind::Motion;
+        errors.equilibrium = if moves { 0.0 } else { worse(0.0, self.unbalanced() / force) };
         self.reported_forces(increment, force, &mut balance, &mut errors);
         errors.support = self.off_support();
         let distance = self.distance(increment);
@@ -295,6 +297,7 @@ impl Judge {
                 direction_before: self.before.directions.get(index).copied(),
                 slipped_before: self.before.slips.get(index).copied().unwrap_or_default(),
                 dimension: self.posted.dimension,
+                is_motion: matches!(increment.point.kind, PointKind::Jump | PointKind::Motion),
             };
             match seen.judge(self.length, force, &mut errors) {
                 Some(direction) => self.before.directions.insert(*index, direction),
@@ -458,7 +461,9 @@ impl Judge {
             errors.reported = worse(errors.reported, along_free.fold(0.0, worse) / force);
         }
         let rounding = work.rounding.iter().sum();
-        errors.global_equilibrium = worse(0.0, balance.error(posted, self.length, force, rounding));
+        if increment.point.kind != PointKind::Motion {
+            errors.global_equilibrium = worse(0.0, balance.error(posted, self.length, force, rounding));
+        }
     }
 
     /// The largest unbalanced force on a free component.
@@ -516,7 +521,7 @@ impl Judge {
 
     fn energy(&mut self, increment: &Increment, strain: f64, errors: &mut Errors) {
         let energy = increment.energy;
-        let most = [energy.external_work, energy.strain, energy.dissipated].map(f64::abs);
+        let most = [energy.external_work, energy.strain, energy.dissipated, energy.released].map(f64::abs);
         let most = most.into_iter().fold(self.largest_energy, f64::max);
         if most.is_finite() {
             self.largest_energy = most;
@@ -525,8 +530,14 @@ impl Judge {
         let reach = self.work.displacements.iter().map(largest).fold(0.0, f64::max);
         let rounding = f64::EPSILON * self.stiffest * reach * increment.arc_length * self.length;
         let size = self.largest_energy.max(of_force).max(ENERGY_DIGITS * rounding);
-        let imbalance = energy.external_work - energy.strain - energy.dissipated;
+        let imbalance = energy.external_work - energy.strain - energy.dissipated - energy.released;
         errors.energy = worse(0.0, imbalance.abs() / size);
+        // A motion gives energy off, and gets none.
+        if increment.point.kind != PointKind::Motion {
+            let gained = self.before.released - energy.released;
+            errors.energy = worse(errors.energy, gained.max(0.0) / size);
+            self.before.released = energy.released;
+        }
         errors.strain_energy = worse(0.0, (energy.strain - (strain - self.initial_strain)).abs() / size);
     }
 }

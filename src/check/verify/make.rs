@@ -4,7 +4,6 @@ use crate::model::JobRequest;
 use crate::model::request::{
     Analysis, Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Strain, Until,
 };
-use indexmap::IndexMap;
 
 /// A request under construction.
 #[derive(Debug, Clone)]
@@ -106,17 +105,8 @@ impl Make {
     }
 
     pub fn stage<const D: usize>(mut self, name: &str, forces: &[(&str, [f64; D])], until: Option<Until>) -> Self {
-        self.0.model.stages.push(Stage {
-            name: name.to_owned(),
-            forces: forces.iter().map(|(node, force)| ((*node).to_owned(), force.to_vec())).collect(),
-            moments: IndexMap::new(),
-            displacements: IndexMap::new(),
-            body_forces: IndexMap::new(),
-            tractions: IndexMap::new(),
-            pressures: IndexMap::new(),
-            obstacle_motion: IndexMap::new(),
-            until,
-        });
+        let forces = forces.iter().map(|(node, force)| ((*node).to_owned(), force.to_vec())).collect();
+        self.0.model.stages.push(Stage { forces, until, ..Stage::new(name) });
         self
     }
 

@@ -17,7 +17,7 @@ use crate::resources::cancel::CancelFlag;
 use serde::{Deserialize, Serialize};
 
 /// Increased whenever an earlier checkpoint would be misread.
-const VERSION: u32 = 10;
+const VERSION: u32 = 11;
 
 /// A path at one of its points.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -152,6 +152,13 @@ impl Checkpoint {
         }
         state(&self.at.here.state)?;
         modes(&self.at.here.modes)?;
+        if let Some(motion) = &self.at.motion {
+            state(&motion.from)?;
+            motion.row.iter().try_for_each(state)?;
+            if !motion.velocity.is_empty() {
+                same("degrees of freedom", motion.velocity.len(), freedoms)?;
+            }
+        }
         self.at.here.rate.iter().try_for_each(rate)?;
         self.at.here.drift.iter().try_for_each(rate)?;
         self.at.here.before.iter().try_for_each(|before| state(&before.state).and_then(|()| rate(&before.rate)))?;

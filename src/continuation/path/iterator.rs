@@ -4,8 +4,10 @@
 //! directions are listed and one is taken. The step length is controlled by the turn of the path and the Newton
 //! iterations.
 
+use crate::continuation::increment::{acceptance, stages, step_control};
+use crate::continuation::jump::jump_motion;
+use crate::continuation::path::branch_switching;
 use crate::continuation::path::checkpoint::{self, Checkpoint, CheckpointError};
-use crate::continuation::path::{acceptance, branch_switching, stages, step_control};
 use crate::continuation::path_state::path_context::PathTrace;
 use crate::continuation::path_state::resumable_state::{Phase, Progress};
 use crate::continuation::scene::Scene;
@@ -133,6 +135,9 @@ fn increment(trace: &mut PathTrace<'_>) -> Option<Increment> {
     if trace.at.totals.index >= trace.scene.analysis.max_increments {
         trace.end(StopReason::MaxIncrements);
         return None;
+    }
+    if trace.at.motion.is_some() {
+        return jump_motion::next_row(trace);
     }
     trace.refer();
     if trace.at.here.rate.is_none() {

@@ -1,27 +1,10 @@
-//! The loop of an increment.
+//! The path: its increments one after the other, by steps along the path and by jumps where it cannot go on.
 //!
 //! | file | contents |
 //! |---|---|
 //! | `iterator` | the path as an iterator of increments |
-//! | `stages` | the beginning and the end of a stage, and the transition to the next |
-//! | `step_control` | the length of a step |
-//! | `step_attempt` | one attempt of a step |
-//! | `acceptance` | acceptance of a point as the present one, and its row |
-//! | `point_classification` | classification of a point, and the continuation of the path from it |
-//! | `mpec_verification` | whether the program of an increment confirms the mode |
-//! | `mpec_increments` | increments found by their program alone |
 //! | `checkpoint`, `branch_switching` | checkpoints to resume a path; a path along another direction |
-//!
-//! All of them work on one `PathTrace` (`continuation::path_state::path_context`), which owns the state.
 
-pub(crate) mod acceptance;
 pub(crate) mod branch_switching;
 pub mod checkpoint;
 pub mod iterator;
-pub(crate) mod mpec_increments;
-pub(crate) mod mpec_verification;
-pub(crate) mod point_classification;
-pub(crate) mod stages;
-pub(crate) mod step_attempt;
-pub(crate) mod step_control;
-pub(crate) mod tolerances;

@@ -10,7 +10,12 @@ use std::sync::Arc;
 /// Description of the start of a stage; `met`: one of its bounds is already met.
 pub(crate) fn describe_start(scene: &Scene, stage: usize, met: bool) -> String {
     let ends = if met { " and ends at once: its bound is met already" } else { "" };
-    format!("stage \"{}\" begins{ends}", scene.stages[stage].name)
+    let stages = &scene.stages[..=stage];
+    let name = &stages[stage].name;
+    if stages[..stage].last().is_some_and(|before| before.turns) {
+        return format!("the load of stage \"{name}\" turns{ends}");
+    }
+    format!("stage \"{name}\" begins{ends}")
 }
 
 /// Description of the contacts that change, with their old and new modes; where the path ends, of the contacts at the

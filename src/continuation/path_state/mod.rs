@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `path_context` | the owner of everything that changes from increment to increment |
 //! | `resumable_state` | everything that determines the continuation of the path: the content of a checkpoint |
+//! | `motion` | the motion of a jump, as far as it has come |
 //! | `contact_search` | the contacts in reach |
 //! | `visited_states` | states that the path has left, to detect a cycle |
 //! | `simultaneous_change_backoff` | waiting time before contact changes are treated together again |
@@ -14,6 +15,7 @@
 pub(crate) mod contact_search;
 pub(crate) mod event_descriptions;
 pub(crate) mod force_rows;
+pub(crate) mod motion;
 pub(crate) mod path_context;
 pub(crate) mod resumable_state;
 pub(crate) mod row_conversion;

@@ -2,9 +2,11 @@
 
 use crate::branching::directions::feasible_direction::{DirectionChoice, Rules};
 use crate::branching::selection::selection_rule::Decision;
+use crate::branching::stability::{self, AssessedState};
 use crate::complementarity::rate_search::branch_and_bound::Effort;
 use crate::continuation::path_state::contact_search::{self, FarContacts, Near};
 use crate::continuation::path_state::event_descriptions::describe_motion;
+use crate::continuation::path_state::motion::JumpCause;
 use crate::continuation::path_state::resumable_state::{Arriving, Listed, Phase, Progress};
 use crate::continuation::path_state::row_conversion::{self, RowSource};
 use crate::continuation::path_state::visited_states::{ClosedContact, Visited};
@@ -18,9 +20,10 @@ use crate::mechanics::problem::node_contact_forces::{is_in_plane, taken_apart, t
 use crate::mechanics::problem::state::State;
 use crate::mechanics::problem::tolerances::NEGLIGIBLE_FORCE;
 use crate::mechanics::structure::Structure;
+use crate::model::request::{OnPathEnd, StageControl};
 use crate::resources::budget::Breach;
 use crate::resources::cancel::CancelFlag;
-use crate::result::increment::{Increment, Point};
+use crate::result::increment::{Increment, Point, PointKind, Stability};
 use crate::result::program_iterate::ProgramIterate;
 use crate::result::stop_reason::{Outcome, StopReason};
 use crate::step::corrector::cached_factorisation::CachedFactorisation;
@@ -89,7 +92,20 @@ impl<'a> PathTrace<'a> {
         let so_far = self.at.totals.force_scale;
         let force_scale = if so_far > NEGLIGIBLE_FORCE { so_far } else { loads().max(NEGLIGIBLE_FORCE) };
         let effort = Effort { most_modes: analysis.max_modes, certify: !analysis.keep_all, cancel: &self.cancel };
-        Rules { selection: analysis.selection, effort, force_scale }
+        let load_rises = self.scene.stages[self.at.stage].control == StageControl::Load;
+        Rules { selection: analysis.selection, load_rises, effort, force_scale }
+    }
+
+    /// Why the structure jumps from a point at which the load can only fall, or the path has this reason to end.
+    pub(crate) fn cause_of_jump(&self, cannot_rise: bool, stop: Option<StopReason>) -> Option<JumpCause> {
+        let rises = self.scene.stages[self.at.stage].control == StageControl::Load;
+        let goes_on = rises || self.scene.analysis.on_path_end == OnPathEnd::Jump;
+        match stop {
+            None if rises && cannot_rise => Some(JumpCause::LoadCannotRise),
+            Some(StopReason::NoDirection) if goes_on => Some(JumpCause::NoDirection),
+            Some(StopReason::Mechanism) if goes_on => Some(JumpCause::Mechanism),
+            _ => None,
+        }
     }
 
     pub(crate) fn end(&mut self, reason: StopReason) {
@@ -175,12 +191,14 @@ impl<'a> PathTrace<'a> {
     pub(crate) fn emit(&mut self, mut emitted: Emitted<'_>) -> Increment {
         // The path does not continue from here along the other directions.
         emitted.options.iter_mut().for_each(|option| option.cached = CachedFactorisation::default());
+        let stability = self.stability(&emitted);
         let mut state = Cow::Borrowed(&self.at.here.state);
         if let Some(reactions) = emitted.reactions {
             state.to_mut().reactions = reactions;
         }
         let row = RowSource {
             stage: self.at.stage,
+            stability,
             loading: self.loading(),
             whole: self.whole_loading(),
             places: self.near.places(),
@@ -208,6 +226,20 @@ impl<'a> PathTrace<'a> {
             error_estimate: emitted.error_estimate,
         });
         row
+    }
+
+    /// Whether the present state is stable, where this is asked for; nothing is said of a state that moves.
+    fn stability(&mut self, emitted: &Emitted<'_>) -> Option<Stability> {
+        let is_asked = self.scene.analysis.record.as_ref().is_some_and(|record| record.stability);
+        if !is_asked || emitted.point.kind == PointKind::Motion {
+            return None;
+        }
+        let (state, mut work) = (&self.at.here.state, self.at.totals.work);
+        let standings = self.standings(state);
+        let at = AssessedState { loading: self.loading(), state, modes: emitted.modes, standings: &standings };
+        let stability = stability::assess(at, &self.cancel, &mut work);
+        self.at.totals.work = work;
+        Some(stability)
     }
 
     /// The loading of all contacts, including those out of reach.

@@ -2,6 +2,7 @@
 
 use crate::branching::bifurcation::singularity::test_functions::Signature;
 use crate::branching::directions::feasible_direction::DirectionChoice;
+use crate::continuation::path_state::motion::JumpProgress;
 use crate::continuation::path_state::simultaneous_change_backoff::JoinBackoff;
 use crate::continuation::path_state::totals::Totals;
 use crate::continuation::path_state::visited_states::VisitedStates;
@@ -52,6 +53,9 @@ pub(crate) struct Progress {
     pub listed: Option<Listed>,
     /// The start of a path that follows another's direction.
     pub followed: Option<Followed>,
+    /// A jump under way; the present point is then a state of its motion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<JumpProgress>,
 }
 
 /// The present point and the data for its continuation.
@@ -131,6 +135,7 @@ impl Progress {
             begun: None,
             listed: None,
             followed: None,
+            motion: None,
         }
     }
 }
@@ -165,6 +170,8 @@ impl Progress {
             state(begun);
             rate(direction);
         }
+        let passed = self.motion.iter_mut().flat_map(|motion| motion.row.iter_mut().chain([&mut motion.from]));
+        passed.for_each(state);
         self.listed.iter_mut().for_each(listed);
         self.followed.iter_mut().for_each(|followed| listed(&mut followed.listed));
     }
@@ -185,6 +192,10 @@ impl Progress {
         };
         here.before.iter_mut().for_each(|before| point(&mut before.state, &mut before.rate));
         self.begun.iter_mut().for_each(|(state, rate)| point(state, rate));
+        if let Some(motion) = &mut self.motion {
+            let passed = motion.row.iter_mut().chain([&mut motion.from]);
+            passed.for_each(|state| before.express(after, &mut state.displacement, None));
+        }
         here.state.displacement = before.totals(&here.state.displacement).into_owned();
         self.references = after.references().to_vec();
     }

@@ -12,13 +12,14 @@ use crate::mechanics::problem::natural_residual;
 use crate::mechanics::problem::node_contact_forces::{self, free_directions};
 use crate::mechanics::problem::state::State;
 use crate::mechanics::problem::tolerances::CONTACT_TOLERANCE;
-use crate::result::increment::{ContactState, Diagnostics, Direction, Energy, Increment, Point, Status};
+use crate::result::increment::{ContactState, Diagnostics, Direction, Energy, Increment, Point, Stability, Status};
 use smallvec::smallvec;
 use std::sync::Arc;
 
 /// The data of a row besides the path's totals.
 pub(crate) struct RowSource<'a> {
     pub stage: usize,
+    pub stability: Option<Stability>,
     pub loading: Loading<'a>,
     /// The loading of every contact of the scene.
     pub whole: Loading<'a>,
@@ -84,10 +85,12 @@ pub(crate) fn increment(scene: &Scene, totals: &Totals, row: &RowSource<'_>) -> 
         applied_forces: force_rows::applied_forces(scene, row),
         point: row.point.clone(),
         directions,
+        stability: row.stability,
         energy: Energy {
             external_work: totals.energy.external_work * energy_unit,
             strain: totals.energy.strain * energy_unit,
             dissipated: totals.energy.dissipated * energy_unit,
+            released: totals.energy.released * energy_unit,
         },
         diagnostics: Diagnostics {
             elapsed_s: row.elapsed_s,

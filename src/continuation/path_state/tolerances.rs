@@ -23,3 +23,7 @@ pub(crate) const ENERGY_ROUND_OFF: f64 = 1e-12;
 /// Energies are compared with at least this multiple of the rounding of forces times the arc length: where no more is
 /// stored, given or dissipated, six digits of the energies, to which their balance is held, do not exist.
 pub(crate) const ENERGY_DIGITS: f64 = 1e6;
+
+/// The first time step, in units of the damping over the stiffness scale. The springs are then as stiff as the structure
+/// at large; the first step is shortened where the structure is more unstable.
+pub(crate) const FIRST_TIME_STEP: f64 = 1.0;

@@ -38,6 +38,8 @@ pub(crate) struct Added {
     pub external_work: f64,
     /// The largest part of the external work, where parts may cancel.
     pub largest_work: f64,
+    /// The work of the stage's forces alone, and that of its supports and obstacles.
+    pub work_of_pattern: [f64; 2],
     pub dissipated: f64,
     /// Total at the end of the increment.
     pub strain: f64,
@@ -69,14 +71,30 @@ impl Totals {
         energy.external_work += added.external_work;
         energy.dissipated += added.dissipated;
         energy.strain = added.strain;
-        for value in [energy.external_work, energy.strain, energy.dissipated] {
+        self.note_largest_energy();
+    }
+
+    /// Adds the energies of a time step of a jump.
+    pub fn add_motion(&mut self, external_work: f64, dissipated: f64, damped: f64, strain: f64) {
+        let energy = &mut self.energy;
+        energy.external_work += external_work;
+        energy.dissipated += dissipated;
+        energy.released += damped;
+        energy.strain = strain;
+        self.note_largest_energy();
+    }
+
+    fn note_largest_energy(&mut self) {
+        let Energy { external_work, strain, dissipated, released } = self.energy;
+        for value in [external_work, strain, dissipated, released] {
             self.largest_energy = self.largest_energy.max(value.abs());
         }
     }
 
-    /// `|external work - strain - dissipated|` over the largest energy so far; `rounding` is that of the forces.
+    /// `|external work - strain - dissipated - released|` over the largest energy so far; `rounding` is that of the forces.
     pub fn energy_error(&self, rounding: f64) -> f64 {
-        let imbalance = (self.energy.external_work - self.energy.strain - self.energy.dissipated).abs();
+        let Energy { external_work, strain, dissipated, released } = self.energy;
+        let imbalance = (external_work - strain - dissipated - released).abs();
         let of_rounding = ENERGY_DIGITS * rounding * self.arc_length;
         let size = self.largest_energy.max(ENERGY_ROUND_OFF * self.force_scale).max(of_rounding);
         if size > 0.0 { imbalance / size } else { 0.0 }

@@ -148,6 +148,7 @@ impl<'a> RegularisedPath<'a> {
             step,
             external_work,
             largest_work: external_work.abs(),
+            work_of_pattern: [external_work, 0.0],
             dissipated,
             strain: self.structure.strain_energy(&self.here.state.displacement) - self.initial_strain,
             force_scale: converged.force_scale,
@@ -218,6 +219,7 @@ impl<'a> RegularisedPath<'a> {
         let places: Vec<Option<usize>> = (0..self.scene.contacts.len()).map(Some).collect();
         let rows: Vec<usize> = (0..self.scene.reported.len()).collect();
         let row = RowSource {
+            stability: None,
             stage: self.stage,
             loading: system.loading,
             whole: system.loading,

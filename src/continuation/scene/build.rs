@@ -412,5 +412,16 @@ pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scal
     }
     let loads = stage.until.as_ref().map(|until| [until.load_above, until.load_below]);
     let given_loads = loads.into_iter().flatten().flatten().collect();
-    StageLoad { name: Arc::from(stage.name.as_str()), pattern, load_scale, enlarged, ends, given_loads, _held: held }
+    StageLoad {
+        name: Arc::from(stage.name.as_str()),
+        pattern: Arc::new(pattern),
+        load_scale,
+        offset: 0.0,
+        control: stage.control,
+        turns: false,
+        enlarged,
+        ends,
+        given_loads,
+        _held: Arc::new(held),
+    }
 }

@@ -105,6 +105,18 @@ fn still(model: &Model) -> NodalValues {
     nodes.map(|(name, rotates)| (Arc::from(name.as_str()), components(rotates))).collect()
 }
 
+/// The parts of all stages between the turns of their loads, and the load scale of each stage.
+fn build_stages(scaled: &ScaledModel<'_>, resistances: &[f64], contacts: usize) -> (Vec<StageLoad>, Vec<f64>) {
+    let (mut parts, mut load_scales) = (Vec::new(), Vec::new());
+    for (stage, force) in scaled.model.stages.iter().zip(resistances) {
+        let mut built = build_stage(stage, *force, scaled);
+        Arc::make_mut(&mut built.pattern).shifts.resize(contacts, [0.0; 3]);
+        load_scales.push(built.load_scale);
+        parts.extend(built.between_turns(stage));
+    }
+    (parts, load_scales)
+}
+
 impl Scene {
     /// Checks the request as a whole and makes it dimensionless, within the budget of the present solve.
     ///
@@ -188,16 +200,14 @@ impl Scene {
             force,
             stretched,
         };
-        let mut stages: Vec<StageLoad> =
-            model.stages.iter().zip(&resistances).map(|(stage, force)| build_stage(stage, *force, &scaled)).collect();
-        stages.iter_mut().for_each(|stage| stage.pattern.shifts.resize(contacts.len(), [0.0; 3]));
+        let (stages, load_scales) = build_stages(&scaled, &resistances, contacts.len());
         let plan = Plan {
             unknowns: structure.unknowns() as u64,
             contacts: reported.len() as u64,
-            stages: stages.len() as u64,
+            stages: model.stages.len() as u64,
             displacement_scale: length,
             force_scale: force,
-            load_scales: stages.iter().map(|stage| stage.load_scale).collect(),
+            load_scales,
             left_out,
             warnings: warnings::warnings(model),
         };

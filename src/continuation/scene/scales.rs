@@ -43,7 +43,7 @@ struct Sizes {
 /// The load factor at which a stage is to end, if specified; otherwise 1.
 pub(super) fn expected_load_factor(stage: &request::Stage) -> f64 {
     let bounds = stage.until.iter().flat_map(|until| [until.load_above, until.load_below]);
-    bounds.flatten().map(f64::abs).reduce(f64::max).unwrap_or(1.0)
+    bounds.flatten().chain(stage.history.iter().copied()).map(f64::abs).reduce(f64::max).unwrap_or(1.0)
 }
 
 fn least(values: &[f64]) -> f64 {

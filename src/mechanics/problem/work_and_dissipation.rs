@@ -39,6 +39,8 @@ pub struct IncrementWork {
     pub dissipated: f64,
     /// The largest part of the external work, of forces held, applied, driving or following: the parts may cancel.
     pub largest_part: f64,
+    /// The work of the forces of the load pattern, and that of the supports and obstacles that it moves.
+    pub of_pattern: [f64; 2],
 }
 
 /// `ΔW` and `ΔD` of an increment in one mode; `turned` is the angle (radians) by which the path's direction turns.
@@ -93,7 +95,12 @@ pub fn work_and_dissipation(
     }
     let parts = [held, applied, driving, following];
     let largest_part = parts.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
-    IncrementWork { external: parts.iter().sum(), dissipated: dissipation, largest_part }
+    IncrementWork {
+        external: parts.iter().sum(),
+        dissipated: dissipation,
+        largest_part,
+        of_pattern: [applied, driving],
+    }
 }
 
 fn work_of_following_loads(loading: Loading<'_>, start: Placed<'_>, end: Placed<'_>, length: f64) -> f64 {

@@ -131,13 +131,17 @@ impl Structure {
         structure
     }
 
-    /// The structure with the same nodes and supports, and with more elements.
+    /// The structure with the same nodes, supports and couplings, and with more elements.
     pub fn with_elements(&self, more: &ElementList) -> Self {
         let held = (0..self.freedoms()).filter(|freedom| self.unknown_of[*freedom].is_none());
         let supports: Vec<(usize, usize)> = held.map(|freedom| self.numbering.node_of(freedom)).collect();
         let mut elements = self.elements.clone();
         elements.append(more);
-        Self::new(self.dimension, self.numbering.nodes(), &supports, elements)
+        let mut structure = Self::new(self.dimension, self.numbering.nodes(), &supports, elements);
+        if !self.couplings.is_empty() {
+            structure.couple(self.couplings.clone());
+        }
+        structure
     }
 
     fn set_elements(&mut self, elements: ElementList) {

@@ -2,15 +2,15 @@
 
 use crate::model::check::numbers;
 use crate::model::input::limits::{
-    MAX_DENSE_UNKNOWNS, MAX_DESIRED_ITERATIONS, MAX_EXPLORE_DEPTH, MAX_EXPLORE_JOBS, MAX_INCREMENTS, MAX_MODES,
-    MAX_UNKNOWNS,
+    MAX_DENSE_UNKNOWNS, MAX_DESIRED_ITERATIONS, MAX_EXPLORE_DEPTH, MAX_EXPLORE_JOBS, MAX_INCREMENTS, MAX_JUMP_STEPS,
+    MAX_MODES, MAX_UNKNOWNS,
 };
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{quoted, suggestion};
 use crate::model::request::recorded_forces::element_label;
 use crate::model::request::{
-    Analysis, ArcLength, ElementReference, Method, Model, Record, RecordedContact, RecordedElements, RecordedSupports,
-    Regularised,
+    Analysis, ArcLength, ElementReference, JobRequest, JumpMotionKind, Method, Model, OnPathEnd, Record,
+    RecordedContact, RecordedElements, RecordedSupports, Regularised, StageControl,
 };
 use std::collections::{HashMap, HashSet};
 
@@ -29,6 +29,10 @@ pub(super) fn analysis(analysis: &Analysis, at: &DocumentPlace, mistakes: &mut M
     if let Some(record) = &analysis.record {
         let at = at.member("record");
         numbers::count(record.every, MAX_INCREMENTS, &at.member("every"), mistakes);
+        if record.stability && analysis.method == Method::Regularised {
+            mistakes
+                .add(&at.member("stability"), || "the method `regularised` finds none; leave it out, or take another");
+        }
         if !record.directions && analysis.explore.is_some() {
             mistakes
                 .add(&at.member("directions"), || "`explore` follows directions, which are left out here; give true");
@@ -44,6 +48,41 @@ pub(super) fn analysis(analysis: &Analysis, at: &DocumentPlace, mistakes: &mut M
         }
         regularised(given, &at, mistakes);
     }
+}
+
+/// Whether and how the structure jumps where the path cannot go on.
+pub(super) fn jumps(request: &JobRequest, at: &DocumentPlace, mistakes: &mut Mistakes) {
+    let JobRequest { model, analysis } = request;
+    let load_control = model.stages.iter().position(|stage| stage.control == StageControl::Load);
+    let jumps = load_control.is_some() || analysis.on_path_end == OnPathEnd::Jump;
+    if jumps && analysis.method == Method::Regularised {
+        let (stages, on_path_end) = (DocumentPlace::ROOT.member("model"), at.member("on_path_end"));
+        let stages = stages.member("stages");
+        let stage = stages.index(load_control.unwrap_or_default());
+        let control = stage.member("control");
+        let at = if load_control.is_some() { &control } else { &on_path_end };
+        mistakes.add(at, || "the method `regularised` does not jump; `auto` or `mpec` would do");
+    }
+    let Some(motion) = analysis.jump_motion else { return };
+    let at = at.member("jump_motion");
+    if !jumps {
+        mistakes.add(
+            &at,
+            || "nothing jumps; give `\"on_path_end\": \"jump\"`, a stage with `\"control\": \"load\"`, or leave it out",
+        );
+    }
+    if let Some(ratio) = motion.damping_ratio {
+        let at = at.member("damping_ratio");
+        numbers::positive(ratio, &at, mistakes);
+        if motion.kind == JumpMotionKind::Overdamped {
+            mistakes.add(&at, || "goes with the kind `inertial`; an overdamped motion has no mass: leave it out");
+        }
+    }
+    let at_tolerance = at.member("tolerance");
+    if numbers::positive(motion.tolerance, &at_tolerance, mistakes) && motion.tolerance >= 1.0 {
+        mistakes.add(&at_tolerance, || format!("found {:?}; a number between 0 and 1 is expected", motion.tolerance));
+    }
+    numbers::count(motion.max_steps, MAX_JUMP_STEPS, &at.member("max_steps"), mistakes);
 }
 
 /// The methods with dense matrices accept fewer unknowns.

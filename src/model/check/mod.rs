@@ -45,6 +45,7 @@ pub fn check(request: &JobRequest) -> Result<(), InputErrors> {
             analysis::recorded(record, &request.model, &at.member("record"), &mut mistakes);
         }
     }
+    analysis::jumps(request, &DocumentPlace::ROOT.member("analysis"), &mut mistakes);
     analysis::analysis(&request.analysis, &DocumentPlace::ROOT.member("analysis"), &mut mistakes);
     mistakes.into_result()
 }

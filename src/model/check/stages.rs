@@ -6,9 +6,10 @@ use crate::model::check::loads::{self, Surroundings, loads};
 use crate::model::check::numbers;
 use crate::model::check::scope::{Scope, proper_name};
 use crate::model::check::structure::{component, component_name};
+use crate::model::input::limits::MAX_TURNS;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::quoted;
-use crate::model::request::{DisplacementBound, Stage, Until};
+use crate::model::request::{DisplacementBound, Stage, StageControl, Until};
 
 pub(super) fn stages(scope: &Scope, mistakes: &mut Mistakes) {
     let at = scope.at.member("stages");
@@ -28,6 +29,49 @@ pub(super) fn stages(scope: &Scope, mistakes: &mut Mistakes) {
         if let Some(ends) = &stage.until {
             until(scope, stage, ends, index == 0, &at.member("until"), mistakes);
         }
+        control(stage, &at, mistakes);
+    }
+}
+
+/// What drives the load, and where it turns.
+fn control(stage: &Stage, at: &DocumentPlace, mistakes: &mut Mistakes) {
+    if stage.control == StageControl::Path {
+        for (field, given) in [("history", !stage.history.is_empty()), ("cycles", stage.cycles.is_some())] {
+            if given {
+                mistakes.add(&at.member(field), || "goes with `\"control\": \"load\"`; give that, or leave it out");
+            }
+        }
+        return;
+    }
+    if stage.until.as_ref().is_some_and(|until| until.load_above.is_some() && until.load_below.is_some()) {
+        mistakes.add(&at.member("until"), || {
+            "under load control the load goes one way: one of `load_above` and `load_below` is expected, or a `history`"
+        });
+    }
+    if stage.history.is_empty() {
+        if stage.cycles.is_some() {
+            mistakes.add(&at.member("cycles"), || "there is no `history` to go through; give one, or leave it out");
+        }
+        return;
+    }
+    if stage.until.is_some() {
+        mistakes.add(&at.member("until"), || "the stage ends where its `history` does; leave one of the two out");
+    }
+    let at_history = at.member("history");
+    let mut before = 0.0;
+    for (index, target) in stage.history.iter().enumerate() {
+        let at = at_history.index(index);
+        if numbers::number(*target, &at, mistakes) && *target == before {
+            mistakes.add(&at, || format!("found {target:?} where the load is {before:?} already; another is expected"));
+        }
+        before = *target;
+    }
+    let Some(cycles) = stage.cycles else { return };
+    let at_cycles = at.member("cycles");
+    numbers::count(cycles, MAX_TURNS, &at_cycles, mistakes);
+    let turns = cycles.saturating_mul(stage.history.len() as u64);
+    if cycles <= MAX_TURNS && turns > MAX_TURNS {
+        mistakes.add(&at_cycles, || format!("the load turns {turns} times; at most {MAX_TURNS} are taken"));
     }
 }
 

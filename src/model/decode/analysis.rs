@@ -3,8 +3,9 @@
 use crate::model::decode::reader::{Choices, Fields, Input, boolean, count, number, text};
 use crate::model::input::mistakes::Mistakes;
 use crate::model::request::{
-    Analysis, ArcLength, Certificate, ContactRange, ElementReference, Events, Explore, ForceRange, LoadSign, Method,
-    Mpec, Record, RecordedContact, RecordedContacts, RecordedElements, RecordedSupports, Regularised, Selection,
+    Analysis, ArcLength, Certificate, ContactRange, ElementReference, Events, Explore, ForceRange, JumpMotion,
+    JumpMotionKind, LoadSign, Method, Mpec, OnPathEnd, Record, RecordedContact, RecordedContacts, RecordedElements,
+    RecordedSupports, Regularised, Selection,
 };
 
 const ANALYSIS: Fields = Fields {
@@ -18,6 +19,8 @@ const ANALYSIS: Fields = Fields {
         "max_modes",
         "explore",
         "record",
+        "on_path_end",
+        "jump_motion",
         "keep_all",
         "mpec",
         "regularised",
@@ -35,7 +38,7 @@ const EXPLORE: Fields = Fields { what: "an exploration", known: &["depth", "max_
 
 const RECORD: Fields = Fields {
     what: "a record",
-    known: &["nodes", "contacts", "elements", "supports", "every", "directions"],
+    known: &["nodes", "contacts", "elements", "supports", "every", "directions", "stability"],
     later: &[],
 };
 
@@ -91,6 +94,24 @@ const SELECTION: Choices<Selection> = Choices {
 const EVENTS: Choices<Events> =
     Choices { what: "a treatment of events", known: &[("auto", Events::Auto), ("all", Events::All)], later: &[] };
 
+const ON_PATH_END: Choices<OnPathEnd> = Choices {
+    what: "what happens where the path ends",
+    known: &[("stop", OnPathEnd::Stop), ("jump", OnPathEnd::Jump)],
+    later: &[],
+};
+
+const JUMP_MOTION: Fields = Fields {
+    what: "a motion of jumps",
+    known: &["kind", "damping_ratio", "tolerance", "max_steps", "keep_steps"],
+    later: &[],
+};
+
+const JUMP_MOTION_KIND: Choices<JumpMotionKind> = Choices {
+    what: "a kind of motion",
+    known: &[("overdamped", JumpMotionKind::Overdamped), ("inertial", JumpMotionKind::Inertial)],
+    later: &[],
+};
+
 pub(super) fn analysis(input: &Input, mistakes: &mut Mistakes) -> Option<Analysis> {
     let object = input.object(&ANALYSIS, mistakes)?;
     let default = Analysis::default();
@@ -105,6 +126,10 @@ pub(super) fn analysis(input: &Input, mistakes: &mut Mistakes) -> Option<Analysi
     let max_modes = object.with_default("max_modes", default.max_modes, mistakes, count);
     let explore = object.optional("explore", mistakes, explore);
     let record = object.optional("record", mistakes, record);
+    let on_path_end = object.with_default("on_path_end", default.on_path_end, mistakes, |input, mistakes| {
+        input.choice(&ON_PATH_END, mistakes)
+    });
+    let jump_motion = object.optional("jump_motion", mistakes, jump_motion);
     let keep_all = object.with_default("keep_all", default.keep_all, mistakes, boolean);
     let mpec = object.optional("mpec", mistakes, mpec);
     let regularised = object.optional("regularised", mistakes, regularised);
@@ -117,6 +142,8 @@ pub(super) fn analysis(input: &Input, mistakes: &mut Mistakes) -> Option<Analysi
         max_modes: max_modes?,
         explore: explore?,
         record: record?,
+        on_path_end: on_path_end?,
+        jump_motion: jump_motion?,
         keep_all: keep_all?,
         mpec: mpec?,
         regularised: regularised?,
@@ -136,6 +163,23 @@ fn arc_length(input: &Input, mistakes: &mut Mistakes) -> Option<ArcLength> {
     Some(ArcLength { displacement_scale: displacement_scale?, load_scale: load_scale?, jump, ..bounds })
 }
 
+fn jump_motion(input: &Input, mistakes: &mut Mistakes) -> Option<JumpMotion> {
+    let object = input.object(&JUMP_MOTION, mistakes)?;
+    let default = JumpMotion::default();
+    let kind = object.required("kind", mistakes, |input, mistakes| input.choice(&JUMP_MOTION_KIND, mistakes));
+    let damping_ratio = object.optional("damping_ratio", mistakes, number);
+    let tolerance = object.with_default("tolerance", default.tolerance, mistakes, number);
+    let max_steps = object.with_default("max_steps", default.max_steps, mistakes, count);
+    let keep_steps = object.with_default("keep_steps", default.keep_steps, mistakes, boolean);
+    Some(JumpMotion {
+        kind: kind?,
+        damping_ratio: damping_ratio?,
+        tolerance: tolerance?,
+        max_steps: max_steps?,
+        keep_steps: keep_steps?,
+    })
+}
+
 fn explore(input: &Input, mistakes: &mut Mistakes) -> Option<Explore> {
     let object = input.object(&EXPLORE, mistakes)?;
     let depth = object.required("depth", mistakes, count);
@@ -152,6 +196,7 @@ fn record(input: &Input, mistakes: &mut Mistakes) -> Option<Record> {
     let supports = object.optional("supports", mistakes, recorded_supports);
     let every = object.with_default("every", default.every, mistakes, count);
     let directions = object.with_default("directions", default.directions, mistakes, boolean);
+    let stability = object.with_default("stability", default.stability, mistakes, boolean);
     Some(Record {
         nodes: nodes?,
         contacts: contacts?,
@@ -159,6 +204,7 @@ fn record(input: &Input, mistakes: &mut Mistakes) -> Option<Record> {
         supports: supports?,
         every: every?,
         directions: directions?,
+        stability: stability?,
     })
 }
 

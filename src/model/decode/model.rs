@@ -7,8 +7,8 @@ use crate::model::decode::reader::{Choices, Fields, Input, count, number, number
 use crate::model::decode::{meshes, obstacles, solids};
 use crate::model::input::mistakes::Mistakes;
 use crate::model::request::{
-    BendingStiffness, Component, Contact, ContactDiscretisation, DisplacementBound, Element, Model, Stage, Strain,
-    Units, Until,
+    BendingStiffness, Component, Contact, ContactDiscretisation, DisplacementBound, Element, Model, Stage,
+    StageControl, Strain, Units, Until,
 };
 
 const MODEL: Fields = Fields {
@@ -84,7 +84,16 @@ const STAGE: Fields = Fields {
         "pressures",
         "obstacle_motion",
         "until",
+        "control",
+        "history",
+        "cycles",
     ],
+    later: &[],
+};
+
+const STAGE_CONTROL: Choices<StageControl> = Choices {
+    what: "a control of a stage",
+    known: &[("path", StageControl::Path), ("load", StageControl::Load)],
     later: &[],
 };
 
@@ -341,6 +350,11 @@ fn stage(input: &Input, mistakes: &mut Mistakes) -> Option<Stage> {
         object.with_default("pressures", Default::default(), mistakes, |input, mistakes| input.map(mistakes, number));
     let obstacle_motion = object.with_default("obstacle_motion", Default::default(), mistakes, vectors);
     let until = object.optional("until", mistakes, until);
+    let control = object.with_default("control", Default::default(), mistakes, |input, mistakes| {
+        input.choice(&STAGE_CONTROL, mistakes)
+    });
+    let history = object.with_default("history", Default::default(), mistakes, numbers);
+    let cycles = object.optional("cycles", mistakes, count);
     Some(Stage {
         name: name?,
         forces: forces?,
@@ -351,6 +365,9 @@ fn stage(input: &Input, mistakes: &mut Mistakes) -> Option<Stage> {
         pressures: pressures?,
         obstacle_motion: obstacle_motion?,
         until: until?,
+        control: control?,
+        history: history?,
+        cycles: cycles?,
     })
 }
 

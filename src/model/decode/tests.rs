@@ -147,17 +147,25 @@ fn until() -> impl Strategy<Value = Until> {
 
 fn stage() -> impl Strategy<Value = Stage> {
     let on_solids = (map(numbers()), map(numbers()), map(number()));
-    (name(), map(numbers()), map(number()), map(numbers()), on_solids, map(numbers()), of(until())).prop_map(
-        |(name, forces, moments, displacements, (body_forces, tractions, pressures), obstacle_motion, until)| Stage {
-            name,
-            forces,
-            moments,
-            displacements,
-            body_forces,
-            tractions,
-            pressures,
-            obstacle_motion,
-            until,
+    let control =
+        (of(until()), one_of([StageControl::Path, StageControl::Load]), vec(number(), 0..3), of(any::<u64>()));
+    (name(), map(numbers()), map(number()), map(numbers()), on_solids, map(numbers()), control).prop_map(
+        |(name, forces, moments, displacements, on_solids, obstacle_motion, (until, control, history, cycles))| {
+            let (body_forces, tractions, pressures) = on_solids;
+            Stage {
+                name,
+                forces,
+                moments,
+                displacements,
+                body_forces,
+                tractions,
+                pressures,
+                obstacle_motion,
+                until,
+                control,
+                history,
+                cycles,
+            }
         },
     )
 }
@@ -229,19 +237,34 @@ fn analysis() -> impl Strategy<Value = Analysis> {
         force_range().prop_map(RecordedSupports::Range),
         vec(name(), 0..3).prop_map(RecordedSupports::Named),
     ];
-    let record = (of(vec(name(), 0..3)), of(contacts), of(elements), of(supports), any::<u64>(), any::<bool>())
-        .prop_map(|(nodes, contacts, elements, supports, every, directions)| Record {
+    let flags = (any::<bool>(), any::<bool>());
+    let record = (of(vec(name(), 0..3)), of(contacts), of(elements), of(supports), any::<u64>(), flags).prop_map(
+        |(nodes, contacts, elements, supports, every, (directions, stability))| Record {
             nodes,
             contacts,
             elements,
             supports,
             every,
             directions,
-        });
+            stability,
+        },
+    );
     let counts = (any::<u64>(), any::<u64>(), any::<bool>());
     let certificate = prop_oneof![Just(Certificate::Use), Just(Certificate::Skip)];
     let mpec = certificate.prop_map(|certificate| Mpec { certificate });
-    (method, selection, events, arc_length, counts, explore, of(record), (of(mpec), of(regularised))).prop_map(
+    let kind = one_of([JumpMotionKind::Overdamped, JumpMotionKind::Inertial]);
+    let jump_motion = (kind, of(number()), number(), any::<u64>(), any::<bool>()).prop_map(
+        |(kind, damping_ratio, tolerance, max_steps, keep_steps)| JumpMotion {
+            kind,
+            damping_ratio,
+            tolerance,
+            max_steps,
+            keep_steps,
+        },
+    );
+    let jumps = (one_of([OnPathEnd::Stop, OnPathEnd::Jump]), of(jump_motion));
+    let of_methods = (of(mpec), of(regularised));
+    (method, selection, events, arc_length, counts, explore, of(record), (of_methods, jumps)).prop_map(
         |(
             method,
             selection,
@@ -250,7 +273,7 @@ fn analysis() -> impl Strategy<Value = Analysis> {
             (max_increments, max_modes, keep_all),
             explore,
             record,
-            (mpec, regularised),
+            ((mpec, regularised), (on_path_end, jump_motion)),
         )| Analysis {
             method,
             selection,
@@ -260,6 +283,8 @@ fn analysis() -> impl Strategy<Value = Analysis> {
             max_modes,
             explore,
             record,
+            on_path_end,
+            jump_motion,
             keep_all,
             mpec,
             regularised,

@@ -30,6 +30,10 @@ pub const MAX_NAMED_NODES: usize = 1_000_000;
 pub const MAX_ROWS_UNASKED: usize = 100;
 /// Stages of a model.
 pub const MAX_STAGES: usize = 1_000;
+/// Turns of the load in a stage's `history`, over all its `cycles`.
+pub const MAX_TURNS: u64 = 10_000;
+/// Upper bound of `analysis.jump_motion.max_steps`.
+pub const MAX_JUMP_STEPS: u64 = 10_000_000;
 /// Free displacement components. From some hundred on matrices are sparse.
 pub const MAX_UNKNOWNS: usize = 150_000;
 /// Free displacement components for the methods `mpec` and `regularised`, whose matrices are dense: memory goes with the

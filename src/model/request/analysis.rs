@@ -6,6 +6,7 @@
 #![warn(missing_docs)]
 
 pub use crate::branching::directions::feasible_direction::Selection;
+use crate::model::request::jump::{JumpMotion, OnPathEnd};
 use crate::model::request::record::Record;
 use serde::{Deserialize, Serialize};
 
@@ -35,6 +36,12 @@ pub struct Analysis {
     /// What is kept of the increments; absent: all of everything.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub record: Option<Record>,
+    #[allow(missing_docs)]
+    #[serde(skip_serializing_if = "is_stop")]
+    pub on_path_end: OnPathEnd,
+    /// How the structure jumps; given with `on_path_end: "jump"`, or a stage of `control: "load"`. Absent: overdamped.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub jump_motion: Option<JumpMotion>,
     /// Keep contacts that are out of reach in the equations, too. For comparison: the path is the same.
     pub keep_all: bool,
     /// Parameters of `method: "mpec"`; given with that method only.
@@ -73,6 +80,10 @@ impl Analysis {
     }
 }
 
+fn is_stop(on_path_end: &OnPathEnd) -> bool {
+    *on_path_end == OnPathEnd::Stop
+}
+
 impl Default for Analysis {
     fn default() -> Self {
         Self {
@@ -84,6 +95,8 @@ impl Default for Analysis {
             max_modes: 65_536,
             explore: None,
             record: None,
+            on_path_end: OnPathEnd::Stop,
+            jump_motion: None,
             keep_all: false,
             mpec: None,
             regularised: None,

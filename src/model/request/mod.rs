@@ -7,6 +7,7 @@
 //! express stand with the fields, for the interface's description; [`check`](crate::model::check) holds to them and to the others.
 
 mod analysis;
+mod jump;
 mod record;
 pub mod recorded_forces;
 pub mod response;
@@ -21,6 +22,7 @@ pub use crate::branching::directions::feasible_direction::Selection;
 pub use crate::mechanics::structure::elements::bar::Strain;
 pub use crate::mechanics::structure::elements::solid::shapes::kind::{LockingMend, SolidKind};
 pub use analysis::{Analysis, ArcLength, Certificate, Events, Explore, LoadSign, Method, Mpec, Regularised};
+pub use jump::{JumpMotion, JumpMotionKind, OnPathEnd};
 pub use record::{
     ContactRange, ElementReference, ForceRange, Record, RecordedContact, RecordedContacts, RecordedElements,
     RecordedSupports,
@@ -28,7 +30,7 @@ pub use record::{
 pub use structure::{
     BendingStiffness, Component, Contact, ContactDiscretisation, ContentEncoding, DisplacementBound, ElasticConstants,
     Element, Material, MeshFile, MeshFormat, MeshGroup, Model, NamedSet, Obstacle, PlaneCondition, Polyline, Side,
-    Solid, Stage, Surface, Units, Until,
+    Solid, Stage, StageControl, Surface, Units, Until,
 };
 
 /// A model and how to trace it.

@@ -30,6 +30,10 @@ pub struct Record {
     pub every: u64,
     /// Whether directions are listed. Without them none can be followed.
     pub directions: bool,
+    /// Whether the stability of each increment is found. It costs the eigenvalues of a matrix of as many rows as there are
+    /// free displacement components, once for each combination of statuses that the contacts about to change can take.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub stability: bool,
 }
 
 /// Which contacts have rows: `all`, those `in_reach` of the path, or the ones that are named.
@@ -121,6 +125,14 @@ impl Record {
 
 impl Default for Record {
     fn default() -> Self {
-        Self { nodes: None, contacts: None, elements: None, supports: None, every: 1, directions: true }
+        Self {
+            nodes: None,
+            contacts: None,
+            elements: None,
+            supports: None,
+            every: 1,
+            directions: true,
+            stability: false,
+        }
     }
 }

@@ -52,7 +52,7 @@ impl PathTable {
                 add("bifurcation", Kind::Flag);
                 add("event", Kind::Text);
                 AXES[..dimension].iter().for_each(|axis| add(&format!("applied_force_{axis}"), Kind::Number));
-                for name in ["external_work", "strain_energy", "dissipated"] {
+                for name in ["external_work", "strain_energy", "dissipated", "released"] {
                     add(name, Kind::Number);
                 }
                 for name in ["elapsed_s", "residual", "complementarity", "energy_error", "error_estimate"] {
@@ -174,7 +174,7 @@ fn push_increment<To: Write + Send>(
     row.extend([Cell::Text(point_kind(point.kind)), Cell::Flag(point.bifurcation)]);
     row.push(point.event.as_deref().map_or(Cell::Empty, Cell::Text));
     row.extend(components(&increment.applied_forces, dimension));
-    row.extend([energy.external_work, energy.strain, energy.dissipated].map(Cell::Number));
+    row.extend([energy.external_work, energy.strain, energy.dissipated, energy.released].map(Cell::Number));
     row.extend(
         [
             diagnostics.elapsed_s,

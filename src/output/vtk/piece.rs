@@ -57,6 +57,7 @@ impl Grid {
             ("external_work", energy.external_work),
             ("strain_energy", energy.strain),
             ("dissipated", energy.dissipated),
+            ("released", energy.released),
         ] {
             DataArray::numbers(name, 1, &[value]).write(to, Some(1))?;
         }

@@ -2,8 +2,8 @@
 
 use crate::complementarity::mpec::Problem;
 use crate::complementarity::rate_search::tests::Random;
+use crate::continuation::increment::mpec_verification;
 use crate::continuation::path::iterator::Path;
-use crate::continuation::path::mpec_verification;
 use crate::continuation::scene::Scene;
 use crate::result::increment::Increment;
 use crate::step::corrector::cost_counters::Work;

@@ -33,7 +33,9 @@ impl LimitLoad {
             | PointKind::Regular
             | PointKind::SmoothBifurcation
             | PointKind::ContactChange
-            | PointKind::End => None,
+            | PointKind::End
+            | PointKind::Jump
+            | PointKind::Motion => None,
         }
     }
 }

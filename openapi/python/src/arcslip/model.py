@@ -281,9 +281,13 @@ class Model:
         body_forces: Optional[Mapping[str, Vector]] = None,
         tractions: Optional[Mapping[str, Vector]] = None,
         pressures: Optional[Mapping[str, float]] = None,
+        control: Optional[str] = None,
+        history: Optional[Sequence[float]] = None,
+        cycles: Optional[int] = None,
     ) -> str:
         """Adds a stage: loads by node, `body_forces` by material, `tractions` and `pressures` by surface. Its pattern is multiplied by the load factor, which begins at 0; `until` says where it ends,
-        such as `{"load_above": 1}` or `{"displacement": {"node": "tip", "component": "y", "below": -0.2}}`."""
+        such as `{"load_above": 1}` or `{"displacement": {"node": "tip", "component": "y", "below": -0.2}}`. With `control="load"`
+        the load goes one way, or through `history` as often as `cycles` says, and the structure jumps where it must."""
         stage: Dict[str, Any] = {"name": name}
         for key, pattern in (("forces", forces), ("displacements", displacements)):
             if pattern is not None:
@@ -298,6 +302,9 @@ class Model:
                 stage[key] = plain(pattern_of_names)
         if until is not None:
             stage["until"] = self._with_names(plain(until), ("displacement", "node"))
+        for key, value in (("control", control), ("history", history), ("cycles", cycles)):
+            if value is not None:
+                stage[key] = plain(value)
         self._stages.append(stage)
         return name
 

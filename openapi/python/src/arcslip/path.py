@@ -114,6 +114,9 @@ class Path:
         row.update(zip((f"applied_force_{axis}" for axis in axes), increment.get("applied_forces") or []))
         energy = increment["energy"]
         row.update(external_work=energy["external_work"], strain_energy=energy["strain"], dissipated=energy["dissipated"])
+        row["released"] = energy.get("released", 0.0)
+        for name, value in (increment.get("stability") or {}).items():
+            row[f"stability.{name}"] = value
         row.update(increment.get("diagnostics") or {})
         row.update((f"measure.{name}", value) for name, value in (increment.get("measure") or {}).items())
         return row

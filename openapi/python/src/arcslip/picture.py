@@ -10,6 +10,7 @@ MARKERS = {
     "nonsmooth_limit": ("D", "nonsmooth limit point"),
     "contact_change": ("o", "contact change"),
     "smooth_bifurcation": ("*", "smooth bifurcation point"),
+    "jump": ("s", "at rest after a jump"),
 }
 FALLING = "falling, bifurcation points"
 #: Line of stretches that ascend or whose direction is the only one, and of descending stretches of bifurcation points.

@@ -1,5 +1,6 @@
 //! The kinds of elements, one file each, and the interface of all.
 
+pub mod anchor;
 pub mod bar;
 pub mod beam;
 pub mod materials;

@@ -25,5 +25,5 @@ pub use model::{Model, Units};
 pub use obstacle::{Contact, ContactDiscretisation, Obstacle, Side};
 pub use polyline::Polyline;
 pub use solid::{PlaneCondition, Solid};
-pub use stage::{DisplacementBound, Stage, Until};
+pub use stage::{DisplacementBound, Stage, StageControl, Until};
 pub use surface::{NamedSet, Surface};

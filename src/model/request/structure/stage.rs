@@ -39,6 +39,37 @@ pub struct Stage {
     /// Where the stage ends; absent: it goes on to `max_increments`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<Until>,
+    #[allow(missing_docs)]
+    #[serde(default, skip_serializing_if = "StageControl::is_path")]
+    pub control: StageControl,
+    /// With `control: "load"`: the load factors that the load goes to one after the other, from 0 on; the stage ends at
+    /// the last. Absent: the load rises to `until`'s `load_above`, or falls to its `load_below`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub history: Vec<f64>,
+    /// How often the load goes through `history`; 1 or more. Absent: once.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "server", schema(minimum = 1, maximum = 100_000))]
+    pub cycles: Option<u64>,
+}
+
+/// What drives a stage. `path`: the arc length, the load rises and falls as equilibrium asks; `load`: the load goes one way,
+/// and where it cannot, the structure jumps to the next state at rest (`analysis.jump_motion`). With prescribed
+/// displacements or moving obstacles the load factor is that of the motion: `load` is displacement control.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum StageControl {
+    /// The arc length.
+    #[default]
+    Path,
+    /// The load.
+    Load,
+}
+
+impl StageControl {
+    fn is_path(&self) -> bool {
+        *self == Self::Path
+    }
 }
 
 impl Stage {
@@ -64,6 +95,9 @@ impl Stage {
             pressures: IndexMap::new(),
             obstacle_motion: IndexMap::new(),
             until: None,
+            control: StageControl::Path,
+            history: Vec::new(),
+            cycles: None,
         }
     }
 
@@ -114,6 +148,27 @@ impl Stage {
     pub fn obstacle_motion(mut self, obstacle: impl Into<String>, translation: impl Into<Vec<f64>>) -> Self {
         self.obstacle_motion.insert(obstacle.into(), translation.into());
         self
+    }
+
+    /// With a load that only goes one way: where it cannot, the structure jumps.
+    #[must_use]
+    pub fn under_load_control(mut self) -> Self {
+        self.control = StageControl::Load;
+        self
+    }
+
+    /// With a load that goes through these load factors, so many times, and jumps where it must.
+    ///
+    /// ```
+    /// use arcslip::{Stage, StageControl};
+    ///
+    /// let stage = Stage::new("shake").force("crown", [0.0, -1.0]).load_history([1.0, -1.0], 10);
+    /// assert_eq!((stage.control, stage.cycles), (StageControl::Load, Some(10)));
+    /// ```
+    #[must_use]
+    pub fn load_history(mut self, load_factors: impl Into<Vec<f64>>, cycles: u64) -> Self {
+        (self.history, self.cycles) = (load_factors.into(), Some(cycles));
+        self.under_load_control()
     }
 
     /// Ending where the load factor reaches a value above 0 from below.

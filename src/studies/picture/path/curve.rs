@@ -48,6 +48,7 @@ pub enum EventKind {
     NonsmoothLimit,
     ContactChange,
     End,
+    Jump,
 }
 
 impl Curve {
@@ -95,7 +96,8 @@ impl Curve {
             PointKind::NonsmoothLimit => EventKind::NonsmoothLimit,
             PointKind::ContactChange => EventKind::ContactChange,
             PointKind::End => EventKind::End,
-            PointKind::Start | PointKind::Regular | PointKind::SmoothBifurcation => return,
+            PointKind::Jump => EventKind::Jump,
+            PointKind::Motion | PointKind::Start | PointKind::Regular | PointKind::SmoothBifurcation => return,
         };
         let label = letters(self.events.len());
         self.events.push(Event { label, kind, at, words: increment.point.event.clone() });
@@ -109,6 +111,7 @@ impl EventKind {
             Self::NonsmoothLimit => "nonsmooth limit",
             Self::ContactChange => "contact change",
             Self::End => "end",
+            Self::Jump => "at rest after a jump",
         }
     }
 }

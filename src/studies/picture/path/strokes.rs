@@ -71,6 +71,11 @@ pub fn marker(sheet: &Sheet<'_>, kind: EventKind, (x, y): Place) -> Drawn {
             sheet.draw(&Circle::new((x, y), size, PAPER.filled()))?;
             sheet.draw(&Circle::new((x, y), size * 8 / 10, outline(INK)))
         }
+        EventKind::Jump => {
+            let reach = size * 12 / 10;
+            let corners = vec![(x - reach, y + reach), (x, y - reach), (x + reach, y + reach)];
+            sheet.draw(&Polygon::new(corners, ShapeStyle::from(&INK).filled()))
+        }
         EventKind::End => {
             let reach = size * 9 / 10;
             let corners =

@@ -9,7 +9,8 @@ import { pointWords, verbatim } from "./words.js";
  *  sheet. */
 export const MARKS = {
   smooth_limit: ["--limit", "circle", "--limit"], nonsmooth_limit: ["--nonsmooth", "diamond", "--nonsmooth"],
-  contact_change: ["--text", "circle", "--panel"], end: ["--text", "square", "--text"], bifurcation: ["--bifurcation", "diamond", "--panel"],
+  contact_change: ["--text", "circle", "--panel"], end: ["--text", "square", "--text"],
+  jump: ["--text", "triangle-up", "--text"], bifurcation: ["--bifurcation", "diamond", "--panel"],
 };
 
 export class Curve {

@@ -12,7 +12,7 @@ import { kindWords, pointWords, short } from "./words.js";
 /** The most points in the list, and the most stages in the key. */
 const LISTED = 60;
 const STAGES = 20;
-const SIGNS = { smooth_limit: "●", nonsmooth_limit: "◆", contact_change: "○", end: "■", bifurcation: "◇" };
+const SIGNS = { smooth_limit: "●", nonsmooth_limit: "◆", contact_change: "○", end: "■", jump: "▲", bifurcation: "◇" };
 
 /** A name for each curve. */
 export function curveNames(curves, runs) {

@@ -1,7 +1,7 @@
 // The points of a path at which something happens. Those that the picture of `arcslip solve --plot` letters have the same
-// letters here: limit points, contact changes and ends, in order of appearance. Bifurcation points have none.
+// letters here: limit points, contact changes, jumps and ends, in order of appearance. Bifurcation points have none.
 
-const LETTERED = new Set(["smooth_limit", "nonsmooth_limit", "contact_change", "end"]);
+const LETTERED = new Set(["smooth_limit", "nonsmooth_limit", "contact_change", "end", "jump"]);
 
 /** A to Z, then AA, AB and so on. */
 export function letters(number) {

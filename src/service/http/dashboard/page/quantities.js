@@ -10,6 +10,15 @@ export const PLAIN = {
   load_factor: "load factor", arc_length: "arc length", step: "step", index: "increment",
   "/energy/dissipated": "dissipated energy", "/energy/strain": "strain energy", "/energy/external_work": "external work",
 };
+/** Of jobs whose structure may jump. */
+export const OF_JUMPS = { "/energy/released": "energy given off by jumps" };
+
+/** Of jobs that record the stability of their increments. */
+export const OF_STABILITY = { "/stability/negative_eigenvalues": "negative eigenvalues" };
+
+/** Whether a structure jumps where its path cannot go on. */
+export const mayJump = ({ model, analysis }) =>
+  analysis?.on_path_end === "jump" || (model.stages ?? []).some(({ control }) => control === "load");
 
 /** Words of the members of contacts and elements, with the power of units that each has. */
 const MEMBERS = {
@@ -89,6 +98,8 @@ export function recordedParts({ model, analysis }) {
 /** Whether the increments of a job with that request have such a member. */
 export function isRecorded(name, request) {
   if (name in PLAIN) return true;
+  if (name in OF_JUMPS) return mayJump(request);
+  if (name in OF_STABILITY) return Boolean(request.analysis?.record?.stability);
   const { of, key, steps } = partsOf(name);
   const { model } = request;
   const isComponent = (step, many = model.dimension) => /^[012]$/.test(step ?? "") && Number(step) < many;
@@ -127,6 +138,8 @@ export function quantityWords(name, request = null) {
 
 function wordsOf(name, request) {
   if (name in PLAIN) return PLAIN[name];
+  if (name in OF_JUMPS) return OF_JUMPS[name];
+  if (name in OF_STABILITY) return OF_STABILITY[name];
   const { of, key, steps } = partsOf(name);
   const component = COMPONENTS[steps.at(-1)] ?? "";
   const turn = request ? rotations(request.model).find(([place]) => String(place) === steps.at(-1))?.[1] : undefined;

@@ -1,9 +1,10 @@
 // All quantities that a job records, in groups, to choose from.
 
-import { contactWords, displacement, elementWords, escaped, PLAIN, quantityWords, recordedParts, rotatingNodes, rotations, STRESSES } from "./quantities.js";
+import { contactWords, displacement, elementWords, escaped, mayJump, OF_JUMPS, OF_STABILITY, PLAIN, quantityWords, recordedParts, rotatingNodes, rotations, STRESSES } from "./quantities.js";
 import { SOLIDS } from "./structure-solids.js";
 
 const LETTERS = "xyz";
+const ENERGIES = Object.keys(PLAIN).filter((name) => name.startsWith("/energy/"));
 const ACCURACY = [
   "/diagnostics/residual", "/diagnostics/complementarity", "/diagnostics/energy_error", "/diagnostics/error_estimate",
   "/measure/equilibrium", "/measure/contact", "/measure/cone", "/measure/friction", "/diagnostics/elapsed_s",
@@ -24,7 +25,8 @@ export function quantityGroups(request) {
   const plain = (names) => names.map((name) => [name, quantityWords(name)]);
   return [
     { title: "Path", parts: plain(["load_factor", "arc_length", "step", "index"]) },
-    { title: "Energies", parts: plain(Object.keys(PLAIN).filter((name) => name.startsWith("/energy/"))) },
+    { title: "Energies", parts: plain([...ENERGIES, ...(mayJump(request) ? Object.keys(OF_JUMPS) : [])]) },
+    ...(request.analysis?.record?.stability ? [{ title: "Stability", parts: plain(Object.keys(OF_STABILITY)) }] : []),
     { title: "Displacements", of: "displacements", parts: axes("", ""), ...namedBy(recorded.displacements) },
     { title: "Rotations", of: "displacements", parts: turns("rotation"), ...namedBy(recorded.displacements.filter((name) => rotating.has(name))) },
     { title: "Moments of supports", of: "supports", parts: turns("moment"), ...namedBy(recorded.supports.filter((name) => rotating.has(name))) },

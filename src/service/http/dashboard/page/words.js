@@ -5,6 +5,7 @@ const STOPPED = {
   max_increments: "It has as many increments as it was allowed.",
   mechanism: "The structure has become a mechanism: it moves without resistance.",
   no_direction: "There is no direction in which the path goes on.",
+  no_equilibrium: "The structure jumps and comes to rest in no stable state.",
   cycle: "The path has come back to where it was.",
   step_underflow: "Even the shortest step does not converge.",
   time_limit: "It has run as long as a job may; what is stored stands.",
@@ -12,7 +13,7 @@ const STOPPED = {
 };
 /** Stop reasons as ends of a path, in a word or two. Few of them are mistakes: a mechanism is what a path may well end in. */
 const ENDED = {
-  max_increments: "all increments used", no_direction: "no direction on", step_underflow: "step too short",
+  max_increments: "all increments used", no_direction: "no direction on", no_equilibrium: "no state at rest", step_underflow: "step too short",
   storage_limit: "storage limit", time_limit: "time limit",
 };
 const STATUS = {
@@ -22,6 +23,7 @@ const STATUS = {
 const KINDS = {
   start: "start", regular: "regular point", smooth_limit: "limit point", nonsmooth_limit: "limit point at a contact change",
   smooth_bifurcation: "bifurcation point", contact_change: "contact change", bifurcation: "bifurcation point", end: "end",
+  jump: "at rest after a jump", motion: "motion of a jump",
 };
 
 /** The name of a job, a study or a sweep. */

@@ -1,12 +1,13 @@
 //! Acceptance of a point reached by a step: it becomes the present point and a row.
 
 use crate::branching::bifurcation::locate::Crossing;
-use crate::continuation::path::point_classification::{self, Arrival, Came};
-use crate::continuation::path::stages;
-use crate::continuation::path::step_control::{self, AcceptedStep};
+use crate::continuation::increment::point_classification::{self, Arrival, Came};
+use crate::continuation::increment::stages;
+use crate::continuation::increment::step_control::{self, AcceptedStep};
 use crate::continuation::path_state::path_context::{Emitted, PathTrace};
 use crate::continuation::path_state::resumable_state::{Arriving, Phase};
 use crate::continuation::path_state::tolerances::REACTION_ROUND_OFF;
+use crate::continuation::scene::StageLoad;
 use crate::mechanics::contact::{Mode, Reaction, all_continue};
 use crate::mechanics::problem::natural_residual;
 use crate::result::increment::{Increment, Point, PointKind};
@@ -60,11 +61,15 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
     let stage = &trace.scene.stages[trace.at.stage];
     let stage_ends = arrival.stage_ends || at_bound || trace.at.counts.end_stage(&stage.ends);
     let mut point = arrival.point;
-    if let Some(reason) = arrival.stop {
+    let is_turned = arriving.load_sign >= 0.0 && trace.at.here.load_sign < 0.0;
+    if let Some(cause) = trace.cause_of_jump(is_turned, arrival.stop).filter(|_| !stage_ends) {
+        stages::begin_jump(trace, cause, &mut point);
+        arrival.taken = None;
+    } else if let Some(reason) = arrival.stop {
         point.kind = PointKind::End;
         trace.end_at(reason, &arrival.options);
     } else if stage_ends {
-        tell_end_of_stage(&mut point, &stage.name);
+        tell_end_of_stage(&mut point, stage);
     }
     let reactions = arrived.filter(|arrived| is_anew(trace, arrived));
     let row = trace.emit(Emitted {
@@ -105,11 +110,11 @@ fn what_it_is(
     arrival
 }
 
-fn tell_end_of_stage(point: &mut Point, stage: &str) {
+fn tell_end_of_stage(point: &mut Point, stage: &StageLoad) {
     if point.kind == PointKind::Regular {
         point.kind = PointKind::End;
     }
-    let what = format!("stage \"{stage}\" ends");
+    let what = if stage.turns { "the load turns".to_owned() } else { format!("stage \"{}\" ends", stage.name) };
     point.event = Some(point.event.take().map_or(what.clone(), |event| format!("{event}; {what}")));
 }
 

@@ -6,7 +6,7 @@
 
 use crate::branching::directions::feasible_direction::DirectionChoice;
 use crate::complementarity::mpec::Problem;
-use crate::continuation::path::tolerances::{
+use crate::continuation::increment::tolerances::{
     DOUBTFUL_LENGTH, FIRST_TRIAL_SHARE, SHARE_BEFORE_CHANGE, SHORTENING_FACTOR, SHORTEST_RESOLVED_LENGTH,
     SMALLEST_MODE_EXTENT,
 };

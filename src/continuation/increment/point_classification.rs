@@ -8,7 +8,7 @@ use crate::branching::directions::feasible_direction::{self, DirectionChoice, Pr
 use crate::branching::directions::trial_step::later_sign;
 use crate::branching::selection::{second_order, selection_rule};
 use crate::branching::uniqueness::all_slipping::all_slipping_directions;
-use crate::continuation::path::mpec_verification;
+use crate::continuation::increment::mpec_verification;
 use crate::continuation::path_state::event_descriptions::describe_change;
 use crate::continuation::path_state::path_context::PathTrace;
 use crate::continuation::path_state::tolerances::{REACTION_ROUND_OFF, SAME_STATE};
@@ -304,7 +304,8 @@ fn contact_change(trace: &mut PathTrace<'_>, came: &Came) -> Arrival {
     // Directions that redistribute a node's force come last: they begin at rest, not with the incoming motion.
     let keeps: Vec<bool> = decision.options.iter().map(|option| keeps_shares(trace, option)).collect();
     if decision.taken.is_some_and(|taken| !keeps[taken]) {
-        let open = |index: usize| keeps[index] && !decision.options[index].retrace;
+        let rises = |index: usize| !rules.load_rises || decision.options[index].load_sign >= 0.0;
+        let open = |index: usize| keeps[index] && rises(index) && !decision.options[index].retrace;
         let best = selection_rule::preferred(&decision.options, incoming, rules, open);
         decision.taken = best.filter(|best| !decision.options[*best].mechanism).or(decision.taken);
     }

@@ -11,9 +11,9 @@
 //! event may lie just past the point. An increment whose end no search finds counts as a fall-back: the point found by
 //! the mode's equations is retained.
 
-use crate::continuation::path::mpec_verification;
-use crate::continuation::path::step_control::AcceptedStep;
-use crate::continuation::path::tolerances::{ADAPTED_ARC_LENGTH, MODE_BOUNDARY_TOLERANCE, POINT_DISTANCE};
+use crate::continuation::increment::mpec_verification;
+use crate::continuation::increment::step_control::AcceptedStep;
+use crate::continuation::increment::tolerances::{ADAPTED_ARC_LENGTH, MODE_BOUNDARY_TOLERANCE, POINT_DISTANCE};
 use crate::continuation::path_state::path_context::PathTrace;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::equations::ModeSystem;

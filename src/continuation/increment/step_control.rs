@@ -9,13 +9,13 @@ use crate::branching::selection::selection_rule;
 use crate::continuation::contact_changes::piecewise_linear;
 use crate::continuation::contact_changes::prediction::{self, ForeseenChange};
 use crate::continuation::contact_changes::simultaneous::may_join_at;
-use crate::continuation::path::step_attempt::{self, Sought, Tried, Tries};
-use crate::continuation::path::tolerances::{
+use crate::continuation::increment::step_attempt::{self, Sought, Tried, Tries};
+use crate::continuation::increment::tolerances::{
     CREEPING_LENGTH, CREEPING_SHARE, LARGEST_CURVATURE_GROWTH, LARGEST_STEP_GROWTH, LENGTH_PAST_BEND, REJECTION_FACTOR,
     SHORT_STEP, SMALLEST_COMPLETED_SHARE, SMALLEST_STRETCH, TARGET_IMBALANCE, TARGET_ITERATIONS, TARGET_TURN,
     UNSTRESSED_MULTIPLE, WORK_ROUND_OFF,
 };
-use crate::continuation::path::{mpec_increments, mpec_verification};
+use crate::continuation::increment::{mpec_increments, mpec_verification};
 use crate::continuation::path_state::path_context::PathTrace;
 use crate::continuation::path_state::step_factor_rounding::quantised;
 use crate::continuation::path_state::tolerances::{ENERGY_ROUND_OFF, SAME_STATE};
@@ -299,10 +299,11 @@ fn balance(trace: &PathTrace<'_>, rate: &Rate, reached: Box<Reached>) -> Accepte
     let end = (&reached.corrected.state, &reached.rate);
     let (loading, modes, turned) = (trace.loading(), &trace.at.here.modes, rate.angle(&reached.rate));
     let work = work_and_dissipation::work_and_dissipation(loading, modes, start, end, turned);
-    let IncrementWork { external: external_work, dissipated, largest_part: largest_work } = work;
+    let IncrementWork { external: external_work, dissipated, largest_part: largest_work, of_pattern } = work;
     let strain = trace.structure.strain_energy(&reached.corrected.state.displacement) - trace.initial_strain;
     let (step, force_scale) = (reached.step, reached.corrected.force_scale);
-    let added = Added { step, external_work, largest_work, dissipated, strain, force_scale };
+    let work_of_pattern = of_pattern;
+    let added = Added { step, external_work, largest_work, work_of_pattern, dissipated, strain, force_scale };
     let (mode_named, crossing, signature) = (None, None, None);
     AcceptedStep { reached, added, turned, mode_named, returned: false, crossing, signature, joined: 0 }
 }

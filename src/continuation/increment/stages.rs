@@ -1,8 +1,9 @@
 //! The beginning and the end of a stage, and the transition to the next.
 
-use crate::branching::directions::feasible_direction::{self, PriorMotion};
+use crate::branching::directions::feasible_direction::{self, DirectionChoice, PriorMotion};
 use crate::branching::selection::selection_rule;
 use crate::continuation::path_state::event_descriptions::describe_start;
+use crate::continuation::path_state::motion::{JumpCause, JumpProgress};
 use crate::continuation::path_state::path_context::{Emitted, PathTrace};
 use crate::continuation::path_state::resumable_state::{Phase, StageCounts};
 use crate::continuation::path_state::visited_states::VisitedStates;
@@ -28,24 +29,7 @@ pub(crate) fn begin_stage(trace: &mut PathTrace<'_>) -> Increment {
     let mut point = Point::plain(PointKind::Start, Some(event));
     let (mut options, mut taken) = (Vec::new(), None);
     if !trace.at.stage_over {
-        let state = &trace.at.here.state;
-        let mut decision = selection_rule::decide(
-            trace.loading(),
-            state,
-            &trace.standings(state),
-            PriorMotion::StageStart,
-            trace.rules(),
-        );
-        trace.take(&mut decision);
-        trace.at.begun = trace.at.here.rate.clone().map(|rate| (trace.at.here.state.clone(), rate));
-        trace.at.step = trace.at.step.min(trace.scene.analysis.arc_length.initial);
-        point.bifurcation = feasible_direction::is_bifurcation(&decision.options, decision.taken, None);
-        point.unexplored_modes = decision.unexplored;
-        point.degenerate = decision.degenerate;
-        if let Some(reason) = decision.stop {
-            trace.end_at(reason, &decision.options);
-        }
-        (options, taken) = (decision.options, decision.taken);
+        (options, taken) = depart(trace, &mut point);
     }
     let here = &trace.at.here;
     let (state, modes) = (here.state.clone(), here.modes.clone());
@@ -65,6 +49,37 @@ pub(crate) fn begin_stage(trace: &mut PathTrace<'_>) -> Increment {
         mode_named: None,
         arriving: None,
     })
+}
+
+/// Takes a direction from a state at rest, and enters in the point what was found; returns the directions and the one
+/// taken. Where the load is to rise and cannot, a jump begins.
+pub(crate) fn depart(trace: &mut PathTrace<'_>, point: &mut Point) -> (Vec<DirectionChoice>, Option<usize>) {
+    let state = &trace.at.here.state;
+    let mut decision =
+        selection_rule::decide(trace.loading(), state, &trace.standings(state), PriorMotion::StageStart, trace.rules());
+    trace.take(&mut decision);
+    trace.at.begun = trace.at.here.rate.clone().map(|rate| (trace.at.here.state.clone(), rate));
+    trace.at.step = trace.at.step.min(trace.scene.analysis.arc_length.initial);
+    point.bifurcation = feasible_direction::is_bifurcation(&decision.options, decision.taken, None);
+    point.unexplored_modes = decision.unexplored;
+    point.degenerate = decision.degenerate;
+    let cannot_rise = decision.taken.is_some_and(|taken| decision.options[taken].load_sign < 0.0);
+    if let Some(cause) = trace.cause_of_jump(cannot_rise, decision.stop) {
+        begin_jump(trace, cause, point);
+        return (decision.options, None);
+    }
+    if let Some(reason) = decision.stop {
+        trace.end_at(reason, &decision.options);
+    }
+    (decision.options, decision.taken)
+}
+
+/// Lets the structure jump from the present point.
+pub(crate) fn begin_jump(trace: &mut PathTrace<'_>, cause: JumpCause, point: &mut Point) {
+    let what = cause.describe().to_owned();
+    point.event = Some(point.event.take().map_or(what.clone(), |event| format!("{event}; {what}")));
+    trace.at.here.rate = None;
+    trace.at.motion = Some(JumpProgress::begin(trace.at.here.state.clone(), cause));
 }
 
 /// Whether a load or displacement at which the stage ends is met before the stage begins.

@@ -1,0 +1,32 @@
+//! The numerical tolerances and limits of this folder, with the reason for each value.
+
+/// Largest number of unknowns whose eigenvalues are computed: they take some 25 n³ operations, two seconds at this size.
+pub(super) const MOST_UNKNOWNS: usize = 500;
+
+/// Largest number of combinations of contact modes that are examined at one point ...
+pub(super) const MOST_MODES: usize = 1024;
+
+/// ... and of them times the cube of the unknowns: some ten seconds.
+pub(super) const MOST_OPERATIONS: f64 = 2e9;
+
+/// Largest number of iterations for the eigenvalues of a matrix, for each of its rows.
+pub(super) const MOST_ITERATIONS: usize = 100;
+
+/// Stiffness (dimensionless) up to which an eigenvalue is zero. Limit points are located with an error of 1e-10 in arc
+/// length, by which the eigenvalue changes in proportion.
+pub(super) const NEUTRAL: f64 = 1e-8;
+
+/// Imaginary part relative to the size of an eigenvalue up to which it is real: a double eigenvalue comes out as a pair
+/// that differs by the square root of round-off.
+pub(super) const REAL: f64 = 1e-7;
+
+/// Distance of two eigenvalues, relative to their size, within which they have no motions of their own.
+pub(super) const MULTIPLE: f64 = 1e-6;
+
+/// Rates of a motion of unit size that violate a law of contact by less are admissible: the motion is an eigenvector with
+/// an error of round-off over the distance of the eigenvalues.
+pub(super) const ADMISSIBLE: f64 = 1e-8;
+
+/// Margin, relative to the largest entry, by which a form has to be positive definite: its entries are sums of products
+/// with an error of round-off.
+pub(super) const DEFINITE: f64 = 1e-12;

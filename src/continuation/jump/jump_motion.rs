@@ -1,0 +1,226 @@
+//! The motion of a jump: its beginning, the lengths of its time steps, its end at rest.
+
+use crate::continuation::jump::arrival;
+use crate::continuation::jump::held_structure::{Springs, is_damped, length};
+use crate::continuation::jump::time_step::{Moved, NotMoved, TimeStep, TimeStepScene};
+use crate::continuation::jump::tolerances::{
+    ACCEPTED_MULTIPLE, DISTANCE_AT_REST, FARTHEST, LARGEST_GROWTH, LARGEST_REDUCTION, LEAST_LENGTH, RAISED_LOAD,
+    SAFETY, SHORT_WAY, SHORTEST_TIME_STEP, SPEED_AT_REST, SPEED_STOPPED, WAY_TO_LOWER,
+};
+use crate::continuation::path_state::contact_search;
+use crate::continuation::path_state::motion::JumpProgress;
+use crate::continuation::path_state::path_context::PathTrace;
+use crate::continuation::path_state::resumable_state::{Phase, Progress};
+use crate::continuation::path_state::step_factor_rounding::quantised;
+use crate::mechanics::structure::Structure;
+use crate::model::request::{JumpMotion, JumpMotionKind};
+use crate::result::increment::Increment;
+use crate::result::stop_reason::StopReason;
+
+/// What a time step led to.
+enum Advance {
+    Moving,
+    AtRest,
+    /// The time step is to be shorter, or the state at rest is not there yet.
+    Again,
+}
+
+/// The next row of a path that jumps: a time step, where they are kept, or the state at rest; `None` where the path ends.
+pub(crate) fn next_row(trace: &mut PathTrace<'_>) -> Option<Increment> {
+    let settings = trace.scene.analysis.jump_motion.unwrap_or_default();
+    let mut scene = TimeStepScene::of(trace);
+    loop {
+        let Some(motion) = trace.at.motion.clone() else {
+            trace.end(StopReason::NoEquilibrium);
+            return None;
+        };
+        match step(trace, motion, &settings, &mut scene) {
+            Ok(Advance::AtRest) => return Some(arrival::at_rest(trace, &settings)),
+            Ok(Advance::Moving) if settings.keep_steps => return Some(arrival::moving(trace)),
+            Ok(Advance::Moving | Advance::Again) => {}
+            Err(reason) => {
+                trace.end(reason);
+                return None;
+            }
+        }
+    }
+}
+
+fn step(
+    trace: &mut PathTrace<'_>,
+    motion: JumpProgress,
+    settings: &JumpMotion,
+    scene: &mut TimeStepScene,
+) -> Result<Advance, StopReason> {
+    if trace.cancel.is_cancelled() {
+        return Err(StopReason::Cancelled);
+    }
+    trace.refer();
+    let structure = &trace.scene.structure;
+    let speed = length(structure, &motion.velocity);
+    let slows = motion.steps > 0 && speed <= SPEED_AT_REST * motion.largest_speed;
+    if slows && speed <= motion.rests_below {
+        return rest(trace, motion, speed, scene);
+    }
+    if motion.travelled > FARTHEST || motion.steps >= settings.max_steps {
+        return Err(StopReason::NoEquilibrium);
+    }
+    let (stiffness, places) = springs(trace, &motion, settings);
+    let load_change = match motion.steps {
+        0 => RAISED_LOAD,
+        _ if motion.travelled > WAY_TO_LOWER && !motion.is_unresisted => -motion.raised,
+        _ => 0.0,
+    };
+    let by_load = load_change.abs() * size_of_load(trace) / (stiffness + 1.0);
+    let expected = (speed * motion.time_step).max(by_load).max(LEAST_LENGTH);
+    let springs = Some(Springs { stiffness, places: &places });
+    let shorter = |trace: &mut PathTrace<'_>, factor: f64| {
+        let time_step = motion.time_step * factor;
+        if let Some(motion) = &mut trace.at.motion {
+            motion.time_step = time_step;
+        }
+        if time_step < SHORTEST_TIME_STEP { Err(StopReason::StepUnderflow) } else { Ok(Advance::Again) }
+    };
+    let moved = match scene.take(trace, &TimeStep { springs, raised: motion.raised, load_change, expected }) {
+        Ok(moved) if moved.is_stable != Some(false) => moved,
+        Ok(_) | Err(NotMoved::TooLong) => return shorter(trace, 0.25),
+        Err(NotMoved::Cancelled) => return Err(StopReason::Cancelled),
+    };
+    let velocity = velocity(structure, trace, &moved, motion.time_step);
+    let way = motion.travelled + length(structure, &velocity) * motion.time_step;
+    let starts = motion.velocity.is_empty() && settings.kind == JumpMotionKind::Overdamped;
+    let change: Vec<f64> = velocity
+        .iter()
+        .enumerate()
+        .map(|(freedom, value)| value - motion.velocity.get(freedom).copied().unwrap_or(0.0))
+        .collect();
+    let error = if starts { 0.0 } else { 0.5 * motion.time_step * length(structure, &change) };
+    let ratio = error / (settings.tolerance * way.max(SHORT_WAY));
+    let factor = quantised((SAFETY / ratio.max(1e-3).sqrt()).clamp(LARGEST_REDUCTION, LARGEST_GROWTH));
+    if ratio > ACCEPTED_MULTIPLE {
+        return shorter(trace, factor.min(0.5));
+    }
+    let after = JumpProgress {
+        steps: motion.steps + 1,
+        time_step: motion.time_step * factor,
+        largest_speed: motion.largest_speed.max(length(structure, &velocity)),
+        velocity,
+        travelled: way,
+        raised: motion.raised + load_change,
+        ..motion
+    };
+    accept(trace, moved, after);
+    Ok(Advance::Moving)
+}
+
+/// Seeks the state at rest from a motion that has slowed down: first at the raised load, then at the load itself.
+fn rest(
+    trace: &mut PathTrace<'_>,
+    motion: JumpProgress,
+    speed: f64,
+    scene: &mut TimeStepScene,
+) -> Result<Advance, StopReason> {
+    let settled = settle(trace, scene, (motion.raised, 0.0), speed)?;
+    let structure = &trace.scene.structure;
+    let is_near = |moved: &Moved| {
+        length(structure, &velocity(structure, trace, moved, 1.0)) <= DISTANCE_AT_REST * motion.travelled
+    };
+    if let Some(settled) = settled.filter(is_near) {
+        let raised = motion.raised;
+        accept(trace, settled, motion.clone());
+        if raised == 0.0 {
+            return Ok(Advance::AtRest);
+        }
+        if let Some(moved) = settle(trace, scene, (raised, -raised), raised)? {
+            accept(trace, moved, JumpProgress { raised: 0.0, ..motion });
+            return Ok(Advance::AtRest);
+        }
+    }
+    if speed <= SPEED_STOPPED * motion.largest_speed {
+        return Err(StopReason::NoEquilibrium);
+    }
+    if let Some(motion) = &mut trace.at.motion {
+        motion.rests_below = 0.3 * speed;
+    }
+    Ok(Advance::Again)
+}
+
+/// The stable state of equilibrium near the present one, at the raised load or with a change of it.
+fn settle(
+    trace: &PathTrace<'_>,
+    scene: &mut TimeStepScene,
+    (raised, load_change): (f64, f64),
+    expected: f64,
+) -> Result<Option<Moved>, StopReason> {
+    let still = TimeStep { springs: None, raised, load_change, expected: expected.max(LEAST_LENGTH) };
+    match scene.take(trace, &still) {
+        Ok(moved) => Ok(Some(moved).filter(|moved| moved.is_stable != Some(false))),
+        Err(NotMoved::TooLong) => Ok(None),
+        Err(NotMoved::Cancelled) => Err(StopReason::Cancelled),
+    }
+}
+
+/// Stiffness and places of the springs that stand for damping and inertia.
+fn springs(trace: &PathTrace<'_>, motion: &JumpProgress, settings: &JumpMotion) -> (f64, Vec<f64>) {
+    let (step, mut places) = (motion.time_step, trace.at.here.state.displacement.clone());
+    match settings.kind {
+        JumpMotionKind::Overdamped => (1.0 / step, places),
+        JumpMotionKind::Inertial => {
+            let stiffness = (1.0 / step + 2.0 * settings.damping_ratio.unwrap_or(1.0)) / step;
+            places.iter_mut().zip(&motion.velocity).for_each(|(place, speed)| *place += speed / step / stiffness);
+            (stiffness, places)
+        }
+    }
+}
+
+/// The size of the load per load factor, dimensionless; at least a small part of the scales.
+fn size_of_load(trace: &PathTrace<'_>) -> f64 {
+    let pattern = &trace.scene.stages[trace.at.stage].pattern;
+    let all = pattern.forces.iter().chain(&pattern.supports).chain(pattern.shifts.iter().flatten());
+    all.fold(0.0_f64, |most, value| value.abs().max(most)).max(1e-3)
+}
+
+/// The displacements of a time step over its length, along the degrees of freedom that are damped.
+fn velocity(structure: &Structure, trace: &PathTrace<'_>, moved: &Moved, time_step: f64) -> Vec<f64> {
+    let before = &trace.at.here.state.displacement;
+    let change =
+        moved.at.here.state.displacement.iter().zip(before).map(|(after, before)| (after - before) / time_step);
+    change.enumerate().map(|(freedom, value)| if is_damped(structure, freedom) { value } else { 0.0 }).collect()
+}
+
+/// Makes the end of a time step the present point.
+fn accept(trace: &mut PathTrace<'_>, moved: Moved, motion: JumpProgress) {
+    let Moved { at, external_work, dissipated, damped, strain, .. } = moved;
+    let before = &mut trace.at;
+    let mut totals = before.totals.clone();
+    (totals.work, totals.force_scale) = (at.totals.work, totals.force_scale.max(at.totals.force_scale));
+    totals.add_motion(external_work, dissipated, damped, strain);
+    // Contacts may have come within reach; the state from which the structure jumped has them, too.
+    let (from, row) =
+        at.motion.as_ref().map_or((motion.from.clone(), motion.row.clone()), |own| (own.from.clone(), own.row.clone()));
+    let mut after = Progress {
+        phase: Phase::Running,
+        stage_over: false,
+        step: before.step,
+        waiting: before.waiting,
+        visited: std::mem::take(&mut before.visited),
+        counts: before.counts,
+        begun: None,
+        listed: None,
+        followed: None,
+        totals,
+        ..at
+    };
+    after.here.state.load = motion.from.load + motion.raised;
+    (after.here.rate, after.here.signature, after.here.before, after.here.apart) = (None, None, None, None);
+    (after.here.drift, after.here.beside) = (None, None);
+    (after.here.is_singular, after.here.is_factorised) = (false, false);
+    after.hold(trace.scene);
+    after.motion = Some(JumpProgress { from, row, ..motion });
+    trace.at = after;
+    if !trace.at.references.is_empty() {
+        trace.structure.to_mut().refer_to(&trace.at.references);
+    }
+    trace.load_anew();
+    trace.far = contact_search::far_contacts(trace.scene, &trace.at);
+}

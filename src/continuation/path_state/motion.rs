@@ -1,0 +1,71 @@
+//! The motion of a jump, as far as it has come: part of the state of a path.
+
+use crate::continuation::path_state::tolerances::FIRST_TIME_STEP;
+use crate::mechanics::problem::state::State;
+use serde::{Deserialize, Serialize};
+
+/// A jump under way from a state at rest, at a load that does not yield.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct JumpProgress {
+    /// The state from which the structure jumps.
+    pub from: State,
+    /// The state of the last row, where time steps are kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub row: Option<State>,
+    /// Time steps so far.
+    pub steps: u64,
+    /// Length of the next time step, in units of the damping over the stiffness scale, or of the period for inertia.
+    pub time_step: f64,
+    /// Displacements of the last time step, over its length; empty before the first.
+    pub velocity: Vec<f64>,
+    pub largest_speed: f64,
+    /// Length of the way so far (dimensionless).
+    pub travelled: f64,
+    /// Speed below which the state at rest is sought next.
+    pub rests_below: f64,
+    /// Part by which the load is raised to set the structure in motion.
+    pub raised: f64,
+    /// Nothing resists the motion but damping: without the raised load it would stop wherever it is.
+    pub is_unresisted: bool,
+}
+
+impl JumpProgress {
+    /// A motion that begins at a state.
+    pub fn begin(from: State, cause: JumpCause) -> Self {
+        Self {
+            from,
+            row: None,
+            steps: 0,
+            time_step: FIRST_TIME_STEP,
+            velocity: Vec::new(),
+            largest_speed: 0.0,
+            travelled: 0.0,
+            rests_below: f64::MAX,
+            raised: 0.0,
+            is_unresisted: cause == JumpCause::Mechanism,
+        }
+    }
+}
+
+/// Why a path jumps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum JumpCause {
+    /// The load can only fall from here, but only rises by the stage's control.
+    LoadCannotRise,
+    /// There is no direction at all.
+    NoDirection,
+    /// The way on is a motion that no element resists.
+    Mechanism,
+}
+
+impl JumpCause {
+    /// Description of the event.
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::LoadCannotRise => "the load cannot rise: the structure jumps",
+            Self::NoDirection => "no quasi-static continuation: the structure jumps",
+            Self::Mechanism => "no element resists: the structure moves",
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! Jumps beside exact states and beside states of paths that were followed past them.
+
+use super::jump;
+use crate::common::paths::{close, scene_file, trace, typed};
+use arcslip::continuation::path::checkpoint::Checkpoint;
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
+use arcslip::model::JobRequest;
+use arcslip::model::request::{JumpMotion, JumpMotionKind, OnPathEnd, StageControl, Until};
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::{Increment, PointKind, Status};
+use arcslip::result::stop_reason::StopReason;
+use serde_json::{Value, json};
+use std::f64::consts::FRAC_PI_2;
+
+/// A built-in scene whose load only rises.
+fn under_load(name: &str) -> JobRequest {
+    let mut request = scene_file(name);
+    request.model.stages.last_mut().expect("a stage").control = StageControl::Load;
+    request
+}
+
+/// Load, strain energy and path of von Mises' truss with engineering strain, `EA = b = 1`, `h = 1/2`.
+struct Truss {
+    rest: f64,
+}
+
+impl Truss {
+    fn new() -> Self {
+        Self { rest: 1.25_f64.sqrt() }
+    }
+
+    fn load(&self, height: f64) -> f64 {
+        let length = (1.0 + height * height).sqrt();
+        -2.0 * (length / self.rest - 1.0) * height / length
+    }
+
+    fn strain_energy(&self, height: f64) -> f64 {
+        let stretch = (1.0 + height * height).sqrt() - self.rest;
+        stretch * stretch / self.rest
+    }
+
+    /// The height above the largest load, `L³ = L0`, and the load there.
+    fn limit(&self) -> (f64, f64) {
+        let height = (self.rest.powf(2.0 / 3.0) - 1.0).sqrt();
+        (height, self.load(height))
+    }
+
+    /// The height of the far branch at a load.
+    fn far(&self, load: f64) -> f64 {
+        let (mut low, mut high) = (-2.0, -0.5);
+        for _ in 0..200 {
+            let middle = 0.5 * (low + high);
+            if self.load(middle) > load { low = middle } else { high = middle }
+        }
+        0.5 * (low + high)
+    }
+}
+
+#[test]
+fn von_mises_truss_jumps_to_the_far_branch() {
+    let truss = Truss::new();
+    let (height, load) = truss.limit();
+    let far = truss.far(load);
+    for kind in [JumpMotionKind::Overdamped, JumpMotionKind::Inertial] {
+        let mut request = under_load("von-mises-truss");
+        request.analysis.jump_motion = Some(JumpMotion::of(kind));
+        let (increments, report) = trace(&request);
+        let (before, after) = jump(&increments);
+        assert_eq!(before.point.kind, PointKind::SmoothLimit);
+        close(before.load_factor, load, 1e-12, "limit load");
+        close(after.load_factor, before.load_factor, 0.0, "the load stays");
+        let heights = [before, after].map(|one| 0.5 + one.displacements["apex"][1]);
+        close(heights[0], height, 1e-8, "height at the limit");
+        close(heights[1], far, 1e-9, "height after the jump");
+        let released = load * (height - far) - (truss.strain_energy(far) - truss.strain_energy(height));
+        close(after.energy.released, released, 1e-7 * released, "energy given off");
+        let later = increments.iter().skip_while(|one| one.point.kind != PointKind::Jump);
+        assert!(
+            later
+                .min_by(|a, b| a.load_factor.total_cmp(&b.load_factor))
+                .is_some_and(|one| one.point.kind == PointKind::Jump)
+        );
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+    }
+}
+
+/// The state of a path that is followed to a load, past all limit points before it.
+fn followed(request: &JobRequest, load: f64) -> Increment {
+    let mut request = request.clone();
+    let stage = request.model.stages.last_mut().expect("a stage");
+    stage.control = StageControl::Path;
+    // The limit load itself is touched, a hair above it is not.
+    stage.until = Some(Until { load_above: Some(load * (1.0 + 1e-9)), ..Until::default() });
+    request.analysis.on_path_end = OnPathEnd::Stop;
+    let (increments, report) = trace(&request);
+    assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+    increments.last().expect("an end").clone()
+}
+
+#[test]
+fn the_arch_type_truss_lands_where_its_path_leads() {
+    let (increments, _) = trace(&under_load("arch-type-truss"));
+    let (before, after) = jump(&increments);
+    close(before.load_factor, 0.0095675907, 1e-9, "limit load");
+    assert_eq!(
+        after.contacts.iter().filter(|contact| contact.gap.abs() < 1e-12).count(),
+        2,
+        "the crown is on the floor"
+    );
+    // With friction the foot remembers how it came there; without, the state is that of the path.
+    let mut request = under_load("arch-type-truss");
+    request.model.contacts.iter_mut().for_each(|contact| contact.friction = 0.0);
+    let (increments, _) = trace(&request);
+    let (before, after) = jump(&increments);
+    let far = followed(&request, before.load_factor);
+    let nodes = after.displacements.iter().zip(far.displacements.iter());
+    for ((name, found), (_, followed)) in nodes {
+        found.iter().zip(followed).for_each(|(found, followed)| close(*found, *followed, 1e-8, name));
+    }
+}
+
+/// Klarbring's node leaves the floor: `K u = (1.5, -1)` with `K = [[1, -0.8], [-0.8, 1]]`.
+#[test]
+fn klarbrings_node_jumps_to_the_free_branch() {
+    let (increments, _) = trace(&under_load("klarbring"));
+    let (before, after) = jump(&increments);
+    close(before.load_factor, 1.5, 1e-12, "load");
+    close(after.displacements["node"][0], 0.7 / 0.36, 1e-10, "x");
+    close(after.displacements["node"][1], 0.2 / 0.36, 1e-10, "y");
+    assert_eq!(after.contacts[0].status, Status::Free);
+    let energy = after.energy;
+    close(energy.external_work, 1.5 * 0.7 / 0.36 - 0.2 / 0.36, 1e-10, "work");
+    close(energy.strain, 0.5 * energy.external_work, 1e-10, "of a linear structure");
+    assert!(energy.dissipated > 0.5 && energy.released > 0.1, "it slides, then lifts off: {energy:?}");
+}
+
+/// Half an arch on a rough floor, its crown pressed by a dead load.
+fn arch(friction: f64) -> JobRequest {
+    let count = 16;
+    let mut nodes = serde_json::Map::new();
+    for k in 0..=count {
+        let angle = FRAC_PI_2 * f64::from(k) / f64::from(count);
+        nodes.insert(format!("n{k}"), json!([angle.sin(), if k == count { 0.0 } else { angle.cos() }]));
+    }
+    let elements: Vec<Value> = (0..count)
+        .map(|k| {
+            let ends = [format!("n{k}"), format!("n{}", k + 1)];
+            json!({"kind": "beam", "nodes": ends, "axial_stiffness": 1e4, "bending_stiffness": 1.0})
+        })
+        .collect();
+    typed(json!({
+        "model": {
+            "dimension": 2, "nodes": nodes, "elements": elements, "supports": {"n0": ["x", "rz"]},
+            "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}},
+            "contacts": [{"node": format!("n{count}"), "obstacle": "floor", "friction": friction}],
+            "stages": [{
+                "name": "press", "forces": {"n0": [0, -0.5]}, "control": "load", "until": {"load_above": 11}
+            }],
+        },
+    }))
+}
+
+#[test]
+fn an_arch_on_a_rough_floor_jumps_at_its_first_limit_point() {
+    let request = arch(0.8);
+    let (increments, report) = trace(&request);
+    assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+    let (before, after) = jump(&increments);
+    assert_eq!(before.point.kind, PointKind::NonsmoothLimit, "the foot slips");
+    let far = followed(&request, before.load_factor);
+    for node in ["n0", "n8", "n16"] {
+        let nodes = after.displacements[node].iter().zip(&far.displacements[node]);
+        nodes.for_each(|(found, followed)| close(*found, *followed, 1e-8, node));
+    }
+}
+
+/// A block on a rough floor is pulled until it slides: without a wall it slides on for ever, with one it stops there.
+#[test]
+fn a_block_slides_to_the_wall_or_away() {
+    let request = |wall: bool| {
+        let mut model = json!({
+            "dimension": 2, "nodes": {"block": [0, 0]},
+            "elements": [{"kind": "spring", "nodes": ["block"], "stiffness": [[0, 0], [0, 1]]}],
+            "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}},
+            "contacts": [{"node": "block", "obstacle": "floor", "friction": 0.5}],
+            "stages": [
+                {"name": "press", "forces": {"block": [0, -1]}, "until": {"load_above": 1}},
+                {"name": "pull", "forces": {"block": [1, 0]}, "control": "load", "until": {"load_above": 2}},
+            ],
+        });
+        if wall {
+            model["obstacles"]["wall"] = json!({"kind": "plane", "point": [3, 0], "normal": [-1, 0]});
+            model["contacts"].as_array_mut().expect("a list").push(json!({"node": "block", "obstacle": "wall"}));
+        }
+        typed(json!({ "model": model }))
+    };
+    let (increments, report) = trace(&request(false));
+    assert_eq!(report.stop_reason, StopReason::NoEquilibrium, "{report:?}");
+    close(increments.last().expect("an end").load_factor, 0.5, 1e-12, "load at which it slides");
+    let (increments, report) = trace(&request(true));
+    assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{report:?}");
+    let after = jump(&increments).1;
+    close(after.displacements["block"][0], 3.0, 1e-9, "at the wall");
+    close(after.energy.dissipated, 1.5, 1e-6, "friction along the way");
+}
+
+fn line(mut increment: Increment) -> String {
+    increment.diagnostics.elapsed_s = 0.0;
+    serde_json::to_string(&increment).expect("written")
+}
+
+#[test]
+fn a_jump_is_resumed_bit_for_bit_at_every_row() {
+    let mut request = under_load("arch-type-truss");
+    request.analysis.jump_motion = Some(JumpMotion { keep_steps: true, ..JumpMotion::default() });
+    let scene = Scene::new(&request).expect("a scene");
+    let whole: Vec<Increment> = Path::new(&scene, CancelFlag::default()).collect();
+    assert!(whole.iter().filter(|one| one.point.kind == PointKind::Motion).count() > 20);
+    let mut path = Path::new(&scene, CancelFlag::default());
+    let mut resumed = Vec::new();
+    while let Some(increment) = path.next() {
+        resumed.push(increment);
+        let text = serde_json::to_string(&path.checkpoint()).expect("written");
+        let checkpoint: Checkpoint = serde_json::from_str(&text).expect("read");
+        path = Path::resume(&scene, checkpoint, CancelFlag::default()).expect("a path");
+    }
+    assert_eq!(resumed.len(), whole.len());
+    resumed.into_iter().zip(whole).for_each(|(resumed, whole)| assert_eq!(line(resumed), line(whole)));
+}
+
+#[test]
+fn kept_time_steps_lead_to_the_same_state() {
+    let rows = |keep_steps: bool| {
+        let mut request = under_load("klarbring");
+        request.analysis.jump_motion = Some(JumpMotion { keep_steps, ..JumpMotion::default() });
+        trace(&request).0
+    };
+    let (kept, whole) = (rows(true), rows(false));
+    let (last, only) = (jump(&kept).1, jump(&whole).1);
+    assert_eq!((&last.displacements, last.energy), (&only.displacements, only.energy));
+}
+
+#[test]
+fn without_friction_both_motions_agree_and_with_friction_they_say_which() {
+    let at_rest = |kind: JumpMotionKind, friction: f64| {
+        let mut request = under_load("arch-type-truss");
+        request.model.contacts.iter_mut().for_each(|contact| contact.friction = friction);
+        let damping_ratio = (kind == JumpMotionKind::Inertial).then_some(3.0);
+        request.analysis.jump_motion = Some(JumpMotion { damping_ratio, ..JumpMotion::of(kind) });
+        let (increments, _) = trace(&request);
+        let after = jump(&increments).1.clone();
+        assert!(after.point.event.as_ref().expect("an event").contains("motion"));
+        after
+    };
+    let [slow, fast] = [JumpMotionKind::Overdamped, JumpMotionKind::Inertial].map(|kind| at_rest(kind, 0.0));
+    for (name, place) in slow.displacements.iter() {
+        place.iter().zip(&fast.displacements[&**name]).for_each(|(slow, fast)| close(*slow, *fast, 1e-8, name));
+    }
+}
