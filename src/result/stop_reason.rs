@@ -86,10 +86,7 @@ impl StopReason {
             Self::NoDirection => {
                 "no quasi-static continuation exists: from here the structure can only move dynamically"
             }
-            Self::NoEquilibrium => {
-                "the structure jumps and comes to rest in no stable state: not within jump_motion.max_steps, or it moves away \
-                 without end"
-            }
+            Self::NoEquilibrium => "the structure jumps and comes to rest in no stable state",
             Self::Cycle => "the path is back at a state it has been in",
             Self::StepUnderflow => "no step of at least arc_length.min converges, or gets anywhere",
             Self::CollapsedBar => "a bar has shrunk to a point, where its direction is lost",

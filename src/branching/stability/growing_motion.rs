@@ -33,7 +33,7 @@ pub(super) fn search(at: AssessedState<'_>, cancel: &CancelFlag, work: &mut Work
     let is_whole = combinations <= MOST_MODES as f64 && combinations * cube <= MOST_OPERATIONS;
     let mut is_complete = is_whole && at.standings.iter().enumerate().all(|(contact, _)| knows_all_modes(at, contact));
     let mut examine = |modes: &[Mode]| {
-        let Some(eigenvalues) = ModeEigenvalues::of(at.loading, modes, at.state, work) else {
+        let Some(eigenvalues) = ModeEigenvalues::in_modes(at, modes, work) else {
             is_complete = false;
             return false;
         };

@@ -53,6 +53,8 @@ pub(crate) struct AssessedState<'a> {
     pub state: &'a State,
     pub modes: &'a [Mode],
     pub standings: &'a [Standing],
+    /// An eigenvalue of these modes is zero: the point is a limit or bifurcation point.
+    pub is_critical: bool,
 }
 
 impl AssessedState<'_> {
@@ -73,7 +75,7 @@ pub(crate) fn assess(at: AssessedState<'_>, cancel: &CancelFlag, work: &mut Work
     if at.loading.structure.unknowns() > MOST_UNKNOWNS {
         return of_many_unknowns(at, work);
     }
-    let present = ModeEigenvalues::of(at.loading, at.modes, at.state, work);
+    let present = ModeEigenvalues::in_modes(at, at.modes, work);
     let negative = present.as_ref().map(|present| present.negative() as u64);
     let flutters = present.as_ref().is_some_and(ModeEigenvalues::is_complex);
     // Oscillations of contacts that slip against friction at rest would have to slip back.
@@ -92,7 +94,7 @@ pub(crate) fn assess(at: AssessedState<'_>, cancel: &CancelFlag, work: &mut Work
 }
 
 fn dead_load(at: AssessedState<'_>, cancel: &CancelFlag, work: &mut Work) -> DeadLoadStability {
-    if at.can_change() && definite_tangent::is_definite(at, work) {
+    if at.can_change() && !at.is_critical && definite_tangent::is_definite(at, work) {
         return DeadLoadStability::Stable;
     }
     match growing_motion::search(at, cancel, work) {
@@ -118,6 +120,7 @@ fn of_many_unknowns(at: AssessedState<'_>, work: &mut Work) -> Stability {
     let loose: Option<Vec<Mode>> = loose.collect();
     let of_loose = loose.and_then(|modes| if modes == at.modes { negative } else { count(&modes, work) });
     let dead_load = match (of_loose, negative) {
+        _ if at.is_critical => DeadLoadStability::Unknown,
         (Some(0), _) => DeadLoadStability::Stable,
         (Some(_), Some(own)) if own > 0 && !at.can_change() => DeadLoadStability::Unstable,
         _ => DeadLoadStability::Unknown,

@@ -1,10 +1,10 @@
 //! The eigenvalues of one contact mode, and their motions.
 
+use crate::branching::stability::AssessedState;
 use crate::branching::stability::tolerances::{MOST_ITERATIONS, MULTIPLE, NEUTRAL, REAL};
 use crate::mechanics::contact::Mode;
 use crate::mechanics::equations::rate_recovery::rate_from;
 use crate::mechanics::equations::{ModeSystem, matrix};
-use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cost_counters::Work;
 use nalgebra::{Complex, DMatrix, DVector, Schur};
@@ -17,11 +17,15 @@ pub(super) struct ModeEigenvalues<'a> {
     inverse: DMatrix<f64>,
     /// The eigenvalues of its first block, `1/κ`; those of motions that contacts hold left out.
     compliances: Vec<Complex<f64>>,
+    /// An eigenvalue `κ` is zero; it is none of the compliances.
+    is_critical: bool,
 }
 
 impl<'a> ModeEigenvalues<'a> {
-    /// The eigenvalues of a mode; `None` where the tangent is singular.
-    pub fn of(loading: Loading<'a>, modes: &'a [Mode], state: &'a State, work: &mut Work) -> Option<Self> {
+    /// The eigenvalues of a mode; `None` where the tangent is singular. At a critical point the eigenvalue of the present
+    /// modes that is zero has a sign by chance, and is left out.
+    pub fn in_modes(at: AssessedState<'a>, modes: &'a [Mode], work: &mut Work) -> Option<Self> {
+        let AssessedState { loading, state, .. } = at;
         let unknowns = loading.structure.unknowns();
         let system = ModeSystem::new(loading, modes, state);
         let size = system.size() - 1;
@@ -41,9 +45,11 @@ impl<'a> ModeEigenvalues<'a> {
         let mut compliances = all;
         compliances.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
         compliances.truncate((2 * unknowns).saturating_sub(size));
+        let is_critical = at.is_critical && modes == at.modes && !compliances.is_empty();
+        compliances.drain(..usize::from(is_critical));
         // The order of an eigenvalue does not depend on the iteration that found it.
         compliances.sort_by(|a, b| a.re.total_cmp(&b.re).then(a.im.total_cmp(&b.im)));
-        Some(Self { system, state, inverse, compliances })
+        Some(Self { system, state, inverse, compliances, is_critical })
     }
 
     /// Number of eigenvalues with a negative real part.
@@ -58,7 +64,7 @@ impl<'a> ModeEigenvalues<'a> {
 
     /// Whether an eigenvalue is zero up to the accuracy of a located point.
     pub fn is_neutral(&self) -> bool {
-        self.compliances.iter().any(|value| value.norm() * NEUTRAL >= 1.0)
+        self.is_critical || self.compliances.iter().any(|value| value.norm() * NEUTRAL >= 1.0)
     }
 
     /// The motions that grow, one for each negative real eigenvalue; `None` for an eigenvalue that has several.

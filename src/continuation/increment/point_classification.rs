@@ -78,7 +78,8 @@ fn arrive(trace: &mut PathTrace<'_>, event: Option<EventFunction>, crossing: Opt
         Some(EventFunction::LoadRate { sign }) => {
             trace.at.here.load_sign = -sign;
             trace.at.counts.limit_points += 1;
-            let what = if sign > 0.0 { "load maximum" } else { "load minimum" };
+            let falls = trace.scene.stages[trace.at.stage].falls();
+            let what = if (sign > 0.0) != falls { "load maximum" } else { "load minimum" };
             if came.motions > 1 {
                 return common_limit(trace, what, sign, came);
             }

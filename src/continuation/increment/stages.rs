@@ -76,7 +76,7 @@ pub(crate) fn depart(trace: &mut PathTrace<'_>, point: &mut Point) -> (Vec<Direc
 
 /// Lets the structure jump from the present point.
 pub(crate) fn begin_jump(trace: &mut PathTrace<'_>, cause: JumpCause, point: &mut Point) {
-    let what = cause.describe().to_owned();
+    let what = cause.describe(trace.scene.stages[trace.at.stage].falls()).to_owned();
     point.event = Some(point.event.take().map_or(what.clone(), |event| format!("{event}; {what}")));
     trace.at.here.rate = None;
     trace.at.motion = Some(JumpProgress::begin(trace.at.here.state.clone(), cause));

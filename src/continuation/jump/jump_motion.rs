@@ -25,6 +25,39 @@ enum Advance {
     Again,
 }
 
+/// Why a path ends within a jump.
+struct JumpEnd(StopReason, Option<NoRest>);
+
+impl From<StopReason> for JumpEnd {
+    fn from(reason: StopReason) -> Self {
+        Self(reason, None)
+    }
+}
+
+impl From<NoRest> for JumpEnd {
+    fn from(why: NoRest) -> Self {
+        Self(StopReason::NoEquilibrium, Some(why))
+    }
+}
+
+/// Why a motion comes to rest in no stable state.
+#[derive(Clone, Copy)]
+enum NoRest {
+    MovesAway,
+    MaxSteps,
+    Unstable,
+}
+
+impl NoRest {
+    fn sentence(self) -> &'static str {
+        match self {
+            Self::MovesAway => "it moves away without end",
+            Self::MaxSteps => "it still moves after jump_motion.max_steps time steps",
+            Self::Unstable => "it stops in a state that is not stable",
+        }
+    }
+}
+
 /// The next row of a path that jumps: a time step, where they are kept, or the state at rest; `None` where the path ends.
 pub(crate) fn next_row(trace: &mut PathTrace<'_>) -> Option<Increment> {
     let settings = trace.scene.analysis.jump_motion.unwrap_or_default();
@@ -38,8 +71,11 @@ pub(crate) fn next_row(trace: &mut PathTrace<'_>) -> Option<Increment> {
             Ok(Advance::AtRest) => return Some(arrival::at_rest(trace, &settings)),
             Ok(Advance::Moving) if settings.keep_steps => return Some(arrival::moving(trace)),
             Ok(Advance::Moving | Advance::Again) => {}
-            Err(reason) => {
+            Err(JumpEnd(reason, why)) => {
                 trace.end(reason);
+                if let Some(why) = why.filter(|_| trace.at.totals.report.stop_reason == reason) {
+                    trace.at.totals.report.sentence = format!("{}: {}", reason.sentence(), why.sentence());
+                }
                 return None;
             }
         }
@@ -51,9 +87,9 @@ fn step(
     motion: JumpProgress,
     settings: &JumpMotion,
     scene: &mut TimeStepScene,
-) -> Result<Advance, StopReason> {
+) -> Result<Advance, JumpEnd> {
     if trace.cancel.is_cancelled() {
-        return Err(StopReason::Cancelled);
+        return Err(StopReason::Cancelled.into());
     }
     trace.refer();
     let structure = &trace.scene.structure;
@@ -62,8 +98,11 @@ fn step(
     if slows && speed <= motion.rests_below {
         return rest(trace, motion, speed, scene);
     }
-    if motion.travelled > FARTHEST || motion.steps >= settings.max_steps {
-        return Err(StopReason::NoEquilibrium);
+    if motion.travelled > FARTHEST {
+        return Err(NoRest::MovesAway.into());
+    }
+    if motion.steps >= settings.max_steps {
+        return Err(NoRest::MaxSteps.into());
     }
     let (stiffness, places) = springs(trace, &motion, settings);
     let load_change = match motion.steps {
@@ -79,12 +118,12 @@ fn step(
         if let Some(motion) = &mut trace.at.motion {
             motion.time_step = time_step;
         }
-        if time_step < SHORTEST_TIME_STEP { Err(StopReason::StepUnderflow) } else { Ok(Advance::Again) }
+        if time_step < SHORTEST_TIME_STEP { Err(StopReason::StepUnderflow.into()) } else { Ok(Advance::Again) }
     };
     let moved = match scene.take(trace, &TimeStep { springs, raised: motion.raised, load_change, expected }) {
         Ok(moved) if moved.is_stable != Some(false) => moved,
         Ok(_) | Err(NotMoved::TooLong) => return shorter(trace, 0.25),
-        Err(NotMoved::Cancelled) => return Err(StopReason::Cancelled),
+        Err(NotMoved::Cancelled) => return Err(StopReason::Cancelled.into()),
     };
     let velocity = velocity(structure, trace, &moved, motion.time_step);
     let way = motion.travelled + length(structure, &velocity) * motion.time_step;
@@ -119,7 +158,7 @@ fn rest(
     motion: JumpProgress,
     speed: f64,
     scene: &mut TimeStepScene,
-) -> Result<Advance, StopReason> {
+) -> Result<Advance, JumpEnd> {
     let settled = settle(trace, scene, (motion.raised, 0.0), speed)?;
     let structure = &trace.scene.structure;
     let is_near = |moved: &Moved| {
@@ -137,7 +176,7 @@ fn rest(
         }
     }
     if speed <= SPEED_STOPPED * motion.largest_speed {
-        return Err(StopReason::NoEquilibrium);
+        return Err(NoRest::Unstable.into());
     }
     if let Some(motion) = &mut trace.at.motion {
         motion.rests_below = 0.3 * speed;
@@ -151,12 +190,12 @@ fn settle(
     scene: &mut TimeStepScene,
     (raised, load_change): (f64, f64),
     expected: f64,
-) -> Result<Option<Moved>, StopReason> {
+) -> Result<Option<Moved>, JumpEnd> {
     let still = TimeStep { springs: None, raised, load_change, expected: expected.max(LEAST_LENGTH) };
     match scene.take(trace, &still) {
         Ok(moved) => Ok(Some(moved).filter(|moved| moved.is_stable != Some(false))),
         Err(NotMoved::TooLong) => Ok(None),
-        Err(NotMoved::Cancelled) => Err(StopReason::Cancelled),
+        Err(NotMoved::Cancelled) => Err(StopReason::Cancelled.into()),
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::branching::bifurcation::singularity::test_functions::negative_eigenvalues;
 use crate::continuation::increment::{acceptance, stages, step_control};
 use crate::continuation::jump::held_structure::Springs;
-use crate::continuation::jump::tolerances::{MOST_INCREMENTS, SHORTEST_SHARE};
+use crate::continuation::jump::tolerances::{MOST_INCREMENTS, SHORTEST_SHARE, STORED_SHARE};
 use crate::continuation::path_state::path_context::PathTrace;
 use crate::continuation::path_state::resumable_state::{Phase, Progress, StageCounts};
 use crate::continuation::path_state::totals::Totals;
@@ -155,7 +155,9 @@ fn begin(trace: &PathTrace<'_>) -> Progress {
     at.here.state.load = 0.0;
     (at.here.rate, at.here.signature, at.here.before, at.here.apart) = (None, None, None, None);
     (at.here.drift, at.here.beside, at.here.is_singular) = (None, None, false);
-    let Totals { index, arc_length, largest_energy, force_scale, work, .. } = before.totals;
+    let Totals { index, arc_length, force_scale, work, .. } = before.totals;
+    // What the structure stores, not what it has given off so far, is what the energies of a time step are compared with.
+    let largest_energy = before.totals.energy.strain.abs().max(STORED_SHARE * before.totals.largest_energy);
     at.totals = Totals { index, arc_length, largest_energy, force_scale, work, ..Totals::begun() };
     at
 }

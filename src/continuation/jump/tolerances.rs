@@ -51,3 +51,7 @@ pub(crate) const LEAST_LENGTH: f64 = 1e-6;
 /// Way (in length scales) up to which the error of a time step is compared with this way: a motion that begins at rest has
 /// none yet. The error is then a ten-thousandth of the length scale times the tolerance.
 pub(crate) const SHORT_WAY: f64 = 1e-4;
+
+/// Part of the largest energy so far with which the energies of a time step are compared at least, where next to nothing
+/// is stored: differences of smaller energies are round-off of the displacements.
+pub(crate) const STORED_SHARE: f64 = 1e-3;

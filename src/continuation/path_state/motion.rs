@@ -60,9 +60,10 @@ pub(crate) enum JumpCause {
 }
 
 impl JumpCause {
-    /// Description of the event.
-    pub fn describe(self) -> &'static str {
+    /// Description of the event; `falls`: the load factor is to fall.
+    pub fn describe(self, falls: bool) -> &'static str {
         match self {
+            Self::LoadCannotRise if falls => "the load cannot fall: the structure jumps",
             Self::LoadCannotRise => "the load cannot rise: the structure jumps",
             Self::NoDirection => "no quasi-static continuation: the structure jumps",
             Self::Mechanism => "no element resists: the structure moves",

@@ -236,7 +236,9 @@ impl<'a> PathTrace<'a> {
         }
         let (state, mut work) = (&self.at.here.state, self.at.totals.work);
         let standings = self.standings(state);
-        let at = AssessedState { loading: self.loading(), state, modes: emitted.modes, standings: &standings };
+        let is_critical = matches!(emitted.point.kind, PointKind::SmoothLimit | PointKind::SmoothBifurcation);
+        let at =
+            AssessedState { loading: self.loading(), state, modes: emitted.modes, standings: &standings, is_critical };
         let stability = stability::assess(at, &self.cancel, &mut work);
         self.at.totals.work = work;
         Some(stability)

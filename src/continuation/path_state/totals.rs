@@ -2,7 +2,7 @@
 
 use crate::continuation::path_state::tolerances::{ENERGY_DIGITS, ENERGY_ROUND_OFF};
 use crate::resources::budget::Breach;
-use crate::result::increment::{Energy, Increment, Tangential};
+use crate::result::increment::{Energy, Increment, PointKind, Tangential};
 use crate::result::report::Report;
 use crate::result::stop_reason::StopReason;
 use crate::step::corrector::cost_counters::Work;
@@ -114,7 +114,10 @@ impl Totals {
         }
         let (report, diagnostics) = (&mut self.report, &row.diagnostics);
         report.increments = row.index;
-        report.largest_residual = report.largest_residual.max(diagnostics.residual);
+        // What is out of balance in a motion is the force of damping and inertia.
+        if row.point.kind != PointKind::Motion {
+            report.largest_residual = report.largest_residual.max(diagnostics.residual);
+        }
         report.largest_complementarity = report.largest_complementarity.max(diagnostics.complementarity);
         report.largest_energy_error = report.largest_energy_error.max(diagnostics.energy_error);
     }

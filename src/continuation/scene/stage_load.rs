@@ -64,15 +64,17 @@ impl StageLoad {
         parts
     }
 
+    /// Whether the load factor falls where the load rises.
+    pub fn falls(&self) -> bool {
+        self.load_scale < 0.0
+    }
+
     /// A load in the user's units. At the bound of a stage it is the given number itself: division by a scale and
     /// multiplication may not restore it.
     pub fn load_factor(&self, load: f64) -> f64 {
         let bounds =
             self.ends.iter().filter_map(|end| if let End::Load { bound, .. } = end { Some(*bound) } else { None });
         let given = bounds.zip(&self.given_loads).find(|(bound, _)| *bound == load);
-        given.map_or_else(
-            || if self.offset == 0.0 { load * self.load_scale } else { self.offset + load * self.load_scale },
-            |(_, given)| *given,
-        )
+        given.map_or_else(|| self.offset + load * self.load_scale, |(_, given)| *given)
     }
 }

@@ -3,7 +3,7 @@
 use crate::model::check::numbers;
 use crate::model::input::limits::{
     MAX_DENSE_UNKNOWNS, MAX_DESIRED_ITERATIONS, MAX_EXPLORE_DEPTH, MAX_EXPLORE_JOBS, MAX_INCREMENTS, MAX_JUMP_STEPS,
-    MAX_MODES, MAX_UNKNOWNS,
+    MAX_MODES, MAX_UNKNOWNS, MIN_JUMP_TOLERANCE,
 };
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{quoted, suggestion};
@@ -79,8 +79,11 @@ pub(super) fn jumps(request: &JobRequest, at: &DocumentPlace, mistakes: &mut Mis
         }
     }
     let at_tolerance = at.member("tolerance");
-    if numbers::positive(motion.tolerance, &at_tolerance, mistakes) && motion.tolerance >= 1.0 {
-        mistakes.add(&at_tolerance, || format!("found {:?}; a number between 0 and 1 is expected", motion.tolerance));
+    let is_number = numbers::number(motion.tolerance, &at_tolerance, mistakes);
+    if is_number && !(MIN_JUMP_TOLERANCE..1.0).contains(&motion.tolerance) {
+        mistakes.add(&at_tolerance, || {
+            format!("found {:?}; a number from {MIN_JUMP_TOLERANCE:e} to below 1 is expected", motion.tolerance)
+        });
     }
     numbers::count(motion.max_steps, MAX_JUMP_STEPS, &at.member("max_steps"), mistakes);
 }

@@ -67,6 +67,11 @@ fn control(stage: &Stage, at: &DocumentPlace, mistakes: &mut Mistakes) {
         before = *target;
     }
     let Some(cycles) = stage.cycles else { return };
+    if cycles > 1 && stage.history.first() == stage.history.last() {
+        mistakes.add(&at_history.index(stage.history.len() - 1), || {
+            format!("found {before:?}, where the next cycle begins; another number is expected, or leave it out")
+        });
+    }
     let at_cycles = at.member("cycles");
     numbers::count(cycles, MAX_TURNS, &at_cycles, mistakes);
     let turns = cycles.saturating_mul(stage.history.len() as u64);

@@ -166,7 +166,8 @@ fn arc_length(input: &Input, mistakes: &mut Mistakes) -> Option<ArcLength> {
 fn jump_motion(input: &Input, mistakes: &mut Mistakes) -> Option<JumpMotion> {
     let object = input.object(&JUMP_MOTION, mistakes)?;
     let default = JumpMotion::default();
-    let kind = object.required("kind", mistakes, |input, mistakes| input.choice(&JUMP_MOTION_KIND, mistakes));
+    let kind = object
+        .with_default("kind", default.kind, mistakes, |input, mistakes| input.choice(&JUMP_MOTION_KIND, mistakes));
     let damping_ratio = object.optional("damping_ratio", mistakes, number);
     let tolerance = object.with_default("tolerance", default.tolerance, mistakes, number);
     let max_steps = object.with_default("max_steps", default.max_steps, mistakes, count);

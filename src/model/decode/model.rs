@@ -353,7 +353,7 @@ fn stage(input: &Input, mistakes: &mut Mistakes) -> Option<Stage> {
     let control = object.with_default("control", Default::default(), mistakes, |input, mistakes| {
         input.choice(&STAGE_CONTROL, mistakes)
     });
-    let history = object.with_default("history", Default::default(), mistakes, numbers);
+    let history = object.with_default("history", Default::default(), mistakes, load_history);
     let cycles = object.optional("cycles", mistakes, count);
     Some(Stage {
         name: name?,
@@ -369,6 +369,14 @@ fn stage(input: &Input, mistakes: &mut Mistakes) -> Option<Stage> {
         history: history?,
         cycles: cycles?,
     })
+}
+
+fn load_history(input: &Input, mistakes: &mut Mistakes) -> Option<Vec<f64>> {
+    let history = numbers(input, mistakes)?;
+    if history.is_empty() {
+        return input.note("the list is empty; one load factor or more is expected, or leave it out", mistakes);
+    }
+    Some(history)
 }
 
 fn until(input: &Input, mistakes: &mut Mistakes) -> Option<Until> {

@@ -28,15 +28,16 @@ pub enum OnPathEnd {
 #[serde(deny_unknown_fields)]
 pub struct JumpMotion {
     #[allow(missing_docs)]
+    #[serde(default)]
     pub kind: JumpMotionKind,
     /// With `inertial` only: damping over `2 √(k m)`, where `m` is the mass and `k` the plan's `force_scale` over
     /// `displacement_scale`; above 0. Absent: 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0))]
     pub damping_ratio: Option<f64>,
-    /// Largest error of a time step over the length of the way so far; between 0 and 1.
+    /// Largest error of a time step over the length of the way so far; at least 1e-6, below 1.
     #[serde(default = "default_tolerance")]
-    #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0, exclusive_maximum = 1.0))]
+    #[cfg_attr(feature = "server", schema(minimum = 1e-6, exclusive_maximum = 1.0))]
     pub tolerance: f64,
     /// Time steps of a jump before it is given up; 1 or more.
     #[serde(default = "default_max_steps")]

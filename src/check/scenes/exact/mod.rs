@@ -35,7 +35,7 @@ pub(crate) mod zeros;
 use crate::check::scenes::exact::solution::ExactSolution;
 pub use curve::{CurvePlace, CurveStage, Piece, Reach};
 
-use crate::model::request::Selection;
+use crate::model::request::{Selection, StageControl};
 use crate::model::{JobRequest, Model};
 
 /// The exact solution of a request, if its model belongs to a known family.
@@ -67,12 +67,14 @@ impl Exact {
 type Recognise = fn(&Model) -> Option<Box<dyn ExactSolution>>;
 
 /// The exact solution of a request whose path is known in closed form. The model must belong to a family, and the
-/// request must select the direction of largest dissipation where there are several directions, as the formulas do.
+/// request must select the direction of largest dissipation where there are several directions, as the formulas do, and
+/// follow the path by arc length.
 pub fn recognise(request: &JobRequest) -> Option<Exact> {
-    if request.analysis.selection != Selection::MaxDissipation {
+    let model = &request.model;
+    let jumps = model.stages.iter().any(|stage| stage.control != StageControl::Path);
+    if request.analysis.selection != Selection::MaxDissipation || jumps {
         return None;
     }
-    let model = &request.model;
     let families: [Recognise; 8] = [
         |model| Some(Box::new(one_bar::OneBarScene::recognise(model)?)),
         |model| Some(Box::new(klarbring::KlarbringScene::recognise(model)?)),
