@@ -278,7 +278,7 @@ fn what_cannot_be_followed_is_refused_with_the_reason() {
     let other = Scene::new(&other).expect("a scene");
     let refused = Path::resume(&other, checkpoint.clone(), CancelFlag::default()).err();
     assert!(matches!(refused, Some(CheckpointError::OtherModel { .. })), "{refused:?}");
-    let text = serde_json::to_string(&checkpoint).expect("written").replacen("\"version\":10", "\"version\":99", 1);
+    let text = serde_json::to_string(&checkpoint).expect("written").replacen("\"version\":11", "\"version\":99", 1);
     let newer: Checkpoint = serde_json::from_str(&text).expect("read");
     assert_eq!(Path::resume(&scene, newer, CancelFlag::default()).err(), Some(CheckpointError::Version { found: 99 }));
 }

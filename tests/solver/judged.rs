@@ -211,7 +211,7 @@ fn a_history_that_does_not_fit_is_refused() {
         JudgedPath::resume(&request, &scene, checkpoint, CancelFlag::default()).err()
     };
     let refused = |error: HistoryError| Some(JudgedCheckpointError::History(error));
-    assert_eq!(resume("\"version\":4", "\"version\":7"), refused(HistoryError::Version { found: 7 }));
+    assert_eq!(resume("\"version\":5", "\"version\":7"), refused(HistoryError::Version { found: 7 }));
     let other = |what, found, expected| refused(HistoryError::OtherModel { what, found, expected });
     assert_eq!(resume("\"reached\":[", "\"reached\":[1.0,1.0,1.0"), other("finished stages", 3, 1));
     assert_eq!(resume("\"directions\":[", "\"directions\":[[1,[0.0,0.0,1.0]]"), other("contacts", 2, 1));
