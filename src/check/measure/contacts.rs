@@ -63,16 +63,7 @@ impl Seen<'_> {
         let on_the_cone = size > 0.0 && size >= (1.0 - ON_THE_CONE) * radius;
         let shrunk = if moves { slipped / distance } else { 0.0 };
         let slip_scaled = slip.map(|value| value * shrunk);
-        let off = if self.is_motion {
-            (size - radius.max(0.0)).max(0.0)
-        } else if on_the_cone {
-            // Only the slip along the traction counts; on a curved path, `slip_direction` measures the slip across the
-            // traction.
-            let against = -(traction[0] * slip_scaled[0] + traction[1] * slip_scaled[1]) / size;
-            size - (size + against).clamp(-radius.max(0.0), radius.max(0.0))
-        } else {
-            natural_map(traction, slip_scaled, radius.max(0.0))
-        };
+        let off = self.off_friction(traction, slip_scaled, radius, on_the_cone);
         errors.friction = worse(errors.friction, off.abs());
 
         errors.reported = worse(errors.reported, beyond_rounding(state.gap - frame.gap));
@@ -110,6 +101,21 @@ impl Seen<'_> {
             errors.slip_direction = worse(errors.slip_direction, angle(&self.motion, &(before + direction)));
         }
         Some(direction)
+    }
+
+    /// The error of Coulomb's law between a traction and a slip, both dimensionless.
+    fn off_friction(&self, traction: [f64; 2], slip: [f64; 2], radius: f64, on_the_cone: bool) -> f64 {
+        let (size, bound) = (traction[0].hypot(traction[1]), radius.max(0.0));
+        if self.is_motion {
+            return (size - bound).max(0.0);
+        }
+        if !on_the_cone {
+            return natural_map(traction, slip, bound);
+        }
+        // Only the slip along the traction counts; on a curved path, `slip_direction` measures the slip across the
+        // traction.
+        let against = -(traction[0] * slip[0] + traction[1] * slip[1]) / size;
+        size - (size + against).clamp(-bound, bound)
     }
 }
 

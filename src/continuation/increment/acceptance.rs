@@ -1,9 +1,12 @@
 //! Acceptance of a point reached by a step: it becomes the present point and a row.
 
 use crate::branching::bifurcation::locate::Crossing;
+use crate::branching::directions::feasible_direction::DirectionChoice;
+use crate::branching::selection::selection_rule;
 use crate::continuation::increment::point_classification::{self, Arrival, Came};
 use crate::continuation::increment::stages;
 use crate::continuation::increment::step_control::{self, AcceptedStep};
+use crate::continuation::path_state::motion::JumpCause;
 use crate::continuation::path_state::path_context::{Emitted, PathTrace};
 use crate::continuation::path_state::resumable_state::{Arriving, Phase};
 use crate::continuation::path_state::tolerances::REACTION_ROUND_OFF;
@@ -14,6 +17,9 @@ use crate::result::increment::{Increment, Point, PointKind};
 use crate::result::stop_reason::StopReason;
 use crate::step::event_functions::EventFunction;
 use crate::step::interpolation::PlacedPoint;
+
+/// Cosine of the angle to the path's own direction above which a direction is this one, not a branch.
+const OWN_DIRECTION: f64 = 1.0 - 1e-9;
 
 /// Makes the reached point the present one and classifies it; `None` where its continuation would violate the contact
 /// laws.
@@ -33,6 +39,7 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
     let bends = here.beside.take().is_some();
     here.is_singular &= !bends;
     let begun = begun.filter(|_| !bends);
+    let negative_before = here.signature.and_then(|signature| signature.negative);
     here.signature = accepted.signature;
     let arriving = Arriving { modes: here.modes.clone(), load_sign: here.load_sign, counts: trace.at.counts };
     let at_bound = stages::at_bound(trace, &reached.rate);
@@ -61,10 +68,13 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
     let stage = &trace.scene.stages[trace.at.stage];
     let stage_ends = arrival.stage_ends || at_bound || trace.at.counts.end_stage(&stage.ends);
     let mut point = arrival.point;
+    let unstable = !stage_ends && arrival.stop.is_none() && loses_stability(trace, point.kind, negative_before);
     let is_turned = arriving.load_sign >= 0.0 && trace.at.here.load_sign < 0.0;
     if let Some(cause) = trace.cause_of_jump(is_turned, arrival.stop).filter(|_| !stage_ends) {
         stages::begin_jump(trace, cause, &mut point);
         arrival.taken = None;
+    } else if unstable {
+        arrival.taken = leave_unstable_path(trace, &arrival.options, &mut point);
     } else if let Some(reason) = arrival.stop {
         point.kind = PointKind::End;
         trace.end_at(reason, &arrival.options);
@@ -108,6 +118,36 @@ fn what_it_is(
     let arrival = point_classification::joined_changes(trace, modes, joined, came.rate);
     modes.clone_from(&trace.at.here.modes);
     arrival
+}
+
+/// Whether the load goes on by itself through a point past which more eigenvalues are negative than before.
+fn loses_stability(trace: &PathTrace<'_>, kind: PointKind, before: Option<usize>) -> bool {
+    let after = trace.at.here.signature.and_then(|signature| signature.negative);
+    trace.rules().load_rises
+        && kind == PointKind::SmoothBifurcation
+        && after.is_some_and(|after| after > before.unwrap_or(0))
+}
+
+/// Leaves a path that becomes unstable: along a branch on which the load goes on, or by a jump towards one on which it does
+/// not. Returns the direction taken.
+fn leave_unstable_path(trace: &mut PathTrace<'_>, options: &[DirectionChoice], point: &mut Point) -> Option<usize> {
+    let Some(own) = trace.at.here.rate.clone() else { return Some(0) };
+    let is_branch = |index: usize| {
+        let option = &options[index];
+        !option.retrace && !option.mechanism && option.rate.product(&own) < OWN_DIRECTION
+    };
+    let rises = |index: usize| is_branch(index) && options[index].load_sign > 0.0;
+    if let Some(rising) = selection_rule::preferred(options, &own, trace.rules(), rises) {
+        trace.go(&options[rising]);
+        trace.at.step = trace.at.step.min(trace.scene.analysis.arc_length.initial);
+        return Some(rising);
+    }
+    let Some(branch) = selection_rule::preferred(options, &own, trace.rules(), is_branch) else { return Some(0) };
+    stages::begin_jump(trace, JumpCause::LosesStability, point);
+    if let Some(motion) = &mut trace.at.motion {
+        motion.push.clone_from(&options[branch].rate.displacement);
+    }
+    None
 }
 
 fn tell_end_of_stage(point: &mut Point, stage: &StageLoad) {

@@ -4,7 +4,7 @@ use crate::continuation::jump::arrival;
 use crate::continuation::jump::held_structure::{Springs, is_damped, length};
 use crate::continuation::jump::time_step::{Moved, NotMoved, TimeStep, TimeStepScene};
 use crate::continuation::jump::tolerances::{
-    ACCEPTED_MULTIPLE, DISTANCE_AT_REST, FARTHEST, LARGEST_GROWTH, LARGEST_REDUCTION, LEAST_LENGTH, RAISED_LOAD,
+    ACCEPTED_MULTIPLE, DISTANCE_AT_REST, FARTHEST, LARGEST_GROWTH, LARGEST_REDUCTION, LEAST_LENGTH, PUSH, RAISED_LOAD,
     SAFETY, SHORT_WAY, SHORTEST_TIME_STEP, SPEED_AT_REST, SPEED_STOPPED, WAY_TO_LOWER,
 };
 use crate::continuation::path_state::contact_search;
@@ -111,7 +111,8 @@ fn step(
         _ => 0.0,
     };
     let by_load = load_change.abs() * size_of_load(trace) / (stiffness + 1.0);
-    let expected = (speed * motion.time_step).max(by_load).max(LEAST_LENGTH);
+    let by_push = if motion.steps == 0 && !motion.push.is_empty() { PUSH } else { 0.0 };
+    let expected = (speed * motion.time_step).max(by_load).max(by_push).max(LEAST_LENGTH);
     let springs = Some(Springs { stiffness, places: &places });
     let shorter = |trace: &mut PathTrace<'_>, factor: f64| {
         let time_step = motion.time_step * factor;
@@ -128,6 +129,7 @@ fn step(
     let velocity = velocity(structure, trace, &moved, motion.time_step);
     let way = motion.travelled + length(structure, &velocity) * motion.time_step;
     let starts = motion.velocity.is_empty() && settings.kind == JumpMotionKind::Overdamped;
+    let pushed = !motion.push.is_empty() && motion.steps == 0;
     let change: Vec<f64> = velocity
         .iter()
         .enumerate()
@@ -142,7 +144,8 @@ fn step(
     let after = JumpProgress {
         steps: motion.steps + 1,
         time_step: motion.time_step * factor,
-        largest_speed: motion.largest_speed.max(length(structure, &velocity)),
+        // The push is no motion of the structure's own.
+        largest_speed: if pushed { 0.0 } else { motion.largest_speed.max(length(structure, &velocity)) },
         velocity,
         travelled: way,
         raised: motion.raised + load_change,
@@ -202,6 +205,10 @@ fn settle(
 /// Stiffness and places of the springs that stand for damping and inertia.
 fn springs(trace: &PathTrace<'_>, motion: &JumpProgress, settings: &JumpMotion) -> (f64, Vec<f64>) {
     let (step, mut places) = (motion.time_step, trace.at.here.state.displacement.clone());
+    if motion.steps == 0 {
+        let size = length(&trace.scene.structure, &motion.push).max(f64::MIN_POSITIVE);
+        places.iter_mut().zip(&motion.push).for_each(|(place, push)| *place += PUSH * push / size);
+    }
     match settings.kind {
         JumpMotionKind::Overdamped => (1.0 / step, places),
         JumpMotionKind::Inertial => {

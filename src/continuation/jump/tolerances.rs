@@ -55,3 +55,7 @@ pub(crate) const SHORT_WAY: f64 = 1e-4;
 /// Part of the largest energy so far with which the energies of a time step are compared at least, where next to nothing
 /// is stored: differences of smaller energies are round-off of the displacements.
 pub(crate) const STORED_SHARE: f64 = 1e-3;
+
+/// Length (in length scales) by which a structure is pushed off an unstable state. Its energy is a hundred-millionth of the
+/// stiffness scale.
+pub(crate) const PUSH: f64 = 1e-4;

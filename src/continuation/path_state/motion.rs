@@ -13,6 +13,9 @@ pub(crate) struct JumpProgress {
     /// The state of the last row, where time steps are kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub row: Option<State>,
+    /// A motion towards which the structure is pushed in the first time step, over all degrees of freedom; empty: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub push: Vec<f64>,
     /// Time steps so far.
     pub steps: u64,
     /// Length of the next time step, in units of the damping over the stiffness scale, or of the period for inertia.
@@ -36,6 +39,7 @@ impl JumpProgress {
         Self {
             from,
             row: None,
+            push: Vec::new(),
             steps: 0,
             time_step: FIRST_TIME_STEP,
             velocity: Vec::new(),
@@ -53,6 +57,8 @@ impl JumpProgress {
 pub(crate) enum JumpCause {
     /// The load can only fall from here, but only rises by the stage's control.
     LoadCannotRise,
+    /// The state loses its stability, and no branch leaves along which the load goes on.
+    LosesStability,
     /// There is no direction at all.
     NoDirection,
     /// The way on is a motion that no element resists.
@@ -65,6 +71,7 @@ impl JumpCause {
         match self {
             Self::LoadCannotRise if falls => "the load cannot fall: the structure jumps",
             Self::LoadCannotRise => "the load cannot rise: the structure jumps",
+            Self::LosesStability => "the state loses its stability: the structure jumps",
             Self::NoDirection => "no quasi-static continuation: the structure jumps",
             Self::Mechanism => "no element resists: the structure moves",
         }

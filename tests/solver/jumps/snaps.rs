@@ -258,3 +258,32 @@ fn without_friction_both_motions_agree_and_with_friction_they_say_which() {
         place.iter().zip(&fast.displacements[&**name]).for_each(|(slow, fast)| close(*slow, *fast, 1e-8, name));
     }
 }
+
+/// A tall truss whose apex buckles sideways before the load maximum: it jumps there, as one with an imperfection does.
+#[test]
+fn a_perfect_truss_jumps_where_it_loses_its_stability() {
+    let request = |aside: f64| {
+        typed(json!({
+            "model": {
+                "dimension": 2, "nodes": {"l": [-1, 0], "top": [aside, 3], "r": [1, 0]},
+                "supports": {"l": ["x", "y"], "r": ["x", "y"]},
+                "elements": [
+                    {"kind": "bar", "nodes": ["l", "top"], "axial_stiffness": 1},
+                    {"kind": "bar", "nodes": ["top", "r"], "axial_stiffness": 1},
+                ],
+                "stages": [{"name": "load", "forces": {"top": [0, -1]}, "control": "load", "until": {"load_above": 0.5}}],
+            },
+            "analysis": {"record": {"stability": true}},
+        }))
+    };
+    let (perfect, _) = trace(&request(0.0));
+    let (before, after) = jump(&perfect);
+    assert_eq!(before.point.kind, PointKind::SmoothBifurcation);
+    let (imperfect, _) = trace(&request(1e-4));
+    let (nearby, hanging) = jump(&imperfect);
+    close(before.load_factor, nearby.load_factor, 2e-3, "load");
+    close(after.displacements["top"][1], hanging.displacements["top"][1], 1e-2, "it hangs below its supports");
+    assert!(after.displacements["top"][1] < -6.0);
+    let stability = after.stability.expect("asked for");
+    assert_eq!(stability.negative_eigenvalues, Some(0));
+}
