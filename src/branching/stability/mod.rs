@@ -12,8 +12,7 @@
 //! eigenvalues of the first block of the inverse. Without slip against friction the tangent is symmetric.
 //!
 //! And whether the state is stable while the load stays (dead load), by the directional criterion of frictional contact
-//! (J. A. C. Martins, A. Pinto da Costa, Int. J. Solids Struct. 37 (2000) 2519, doi:10.1016/S0020-7683(98)00291-1; and
-//! with F. M. F. Simões, Int. J. Numer. Methods Engrg. 1999 to 2004): the state is unstable if some motion `v e^{λt}`,
+//! (J. A. C. Martins, A. Pinto da Costa, Int. J. Solids Struct. 37 (2000) 2519): the state is unstable if some motion `v e^{λt}`,
 //! `λ > 0`, is admissible, that is if
 //!
 //! ```text

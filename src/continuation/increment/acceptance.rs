@@ -1,5 +1,6 @@
 //! Acceptance of a point reached by a step: it becomes the present point and a row.
 
+use crate::branching::bifurcation::branch_directions::tolerances::COINCIDENCE_COSINE;
 use crate::branching::bifurcation::locate::Crossing;
 use crate::branching::directions::feasible_direction::DirectionChoice;
 use crate::branching::selection::selection_rule;
@@ -17,9 +18,6 @@ use crate::result::increment::{Increment, Point, PointKind};
 use crate::result::stop_reason::StopReason;
 use crate::step::event_functions::EventFunction;
 use crate::step::interpolation::PlacedPoint;
-
-/// Cosine of the angle to the path's own direction above which a direction is this one, not a branch.
-const OWN_DIRECTION: f64 = 1.0 - 1e-9;
 
 /// Makes the reached point the present one and classifies it; `None` where its continuation would violate the contact
 /// laws.
@@ -134,7 +132,7 @@ fn leave_unstable_path(trace: &mut PathTrace<'_>, options: &[DirectionChoice], p
     let Some(own) = trace.at.here.rate.clone() else { return Some(0) };
     let is_branch = |index: usize| {
         let option = &options[index];
-        !option.retrace && !option.mechanism && option.rate.product(&own) < OWN_DIRECTION
+        !option.retrace && !option.mechanism && option.rate.product(&own) <= COINCIDENCE_COSINE
     };
     let rises = |index: usize| is_branch(index) && options[index].load_sign > 0.0;
     if let Some(rising) = selection_rule::preferred(options, &own, trace.rules(), rises) {

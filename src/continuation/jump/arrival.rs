@@ -1,9 +1,10 @@
 //! The rows of a jump, and the directions at the state at rest.
 
+use crate::branching::directions::feasible_direction::DirectionChoice;
 use crate::continuation::increment::stages;
-use crate::continuation::path_state::motion::JumpProgress;
 use crate::continuation::path_state::path_context::{Emitted, PathTrace};
 use crate::continuation::path_state::tolerances::SAME_STATE;
+use crate::mechanics::contact::Mode;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::problem::state::State;
 use crate::model::request::{JumpMotion, JumpMotionKind};
@@ -15,9 +16,9 @@ use crate::step::corrector::newton;
 pub(crate) fn at_rest(trace: &mut PathTrace<'_>, settings: &JumpMotion) -> Increment {
     trace.refer();
     let Some(motion) = trace.at.motion.take() else { return moving(trace) };
-    let before = start_of_row(trace, &motion, settings);
-    let step = before.distance(&trace.at.here.state);
-    note_step(trace, step);
+    let kept = motion.row.as_ref().filter(|_| settings.keep_steps);
+    let before = kept.unwrap_or(&motion.from).clone();
+    note_step(trace, &before);
     let kind = match settings.kind {
         JumpMotionKind::Overdamped => "overdamped",
         JumpMotionKind::Inertial => "inertial",
@@ -30,13 +31,39 @@ pub(crate) fn at_rest(trace: &mut PathTrace<'_>, settings: &JumpMotion) -> Incre
     if motion.from.distance(&trace.at.here.state) <= SAME_STATE && trace.at.motion.take().is_some() {
         trace.end(StopReason::NoDirection);
     }
+    emit(trace, &before, &modes, point, (options, taken))
+}
+
+/// The row of a state of the motion.
+pub(crate) fn moving(trace: &mut PathTrace<'_>) -> Increment {
+    trace.refer();
     let state = trace.at.here.state.clone();
-    let system = ModeSystem::new(trace.loading(), &modes, &state);
+    let before = trace.at.motion.as_mut().map_or_else(
+        || state.clone(),
+        |motion| motion.row.replace(state.clone()).unwrap_or_else(|| motion.from.clone()),
+    );
+    note_step(trace, &before);
+    let modes = trace.at.here.modes.clone();
+    let point = Point::plain(PointKind::Motion, Some("the structure moves".to_owned()));
+    emit(trace, &before, &modes, point, (Vec::new(), None))
+}
+
+/// The row of the present state, in the modes that led there.
+fn emit(
+    trace: &mut PathTrace<'_>,
+    before: &State,
+    modes: &[Mode],
+    point: Point,
+    (options, taken): (Vec<DirectionChoice>, Option<usize>),
+) -> Increment {
+    let state = &trace.at.here.state;
+    let system = ModeSystem::new(trace.loading(), modes, state);
     let residual = newton::judged(&system, state.clone(), trace.at.totals.force_scale).residual;
+    let step = before.distance(state);
     trace.emit(Emitted {
-        before: &before,
+        before,
         reactions: None,
-        modes: &modes,
+        modes,
         step,
         point,
         options,
@@ -48,43 +75,9 @@ pub(crate) fn at_rest(trace: &mut PathTrace<'_>, settings: &JumpMotion) -> Incre
     })
 }
 
-/// The row of a state of the motion.
-pub(crate) fn moving(trace: &mut PathTrace<'_>) -> Increment {
-    trace.refer();
-    let state = trace.at.here.state.clone();
-    let before = trace.at.motion.as_mut().map_or_else(
-        || state.clone(),
-        |motion| motion.row.replace(state.clone()).unwrap_or_else(|| motion.from.clone()),
-    );
-    let step = before.distance(&state);
-    note_step(trace, step);
-    let modes = trace.at.here.modes.clone();
-    let system = ModeSystem::new(trace.loading(), &modes, &state);
-    let residual = newton::judged(&system, state.clone(), trace.at.totals.force_scale).residual;
-    trace.emit(Emitted {
-        before: &before,
-        reactions: None,
-        modes: &modes,
-        step,
-        point: Point::plain(PointKind::Motion, Some("the structure moves".to_owned())),
-        options: Vec::new(),
-        taken: None,
-        residual,
-        error_estimate: 0.0,
-        mode_named: None,
-        arriving: None,
-    })
-}
-
-/// The state of the row before the state at rest.
-fn start_of_row(trace: &PathTrace<'_>, motion: &JumpProgress, settings: &JumpMotion) -> State {
-    let kept = motion.row.as_ref().filter(|_| settings.keep_steps);
-    debug_assert!(trace.at.motion.is_none());
-    kept.unwrap_or(&motion.from).clone()
-}
-
-fn note_step(trace: &mut PathTrace<'_>, step: f64) {
+/// Counts the row from the state of the one before.
+fn note_step(trace: &mut PathTrace<'_>, before: &State) {
     trace.at.totals.index += 1;
-    trace.at.totals.arc_length += step;
+    trace.at.totals.arc_length += before.distance(&trace.at.here.state);
     trace.at.counts.increments += 1;
 }

@@ -12,8 +12,6 @@ use crate::continuation::scene::{Scene, StageLoad};
 use crate::mechanics::contact::ContactPair;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::equations::stage_end_criteria::End;
-use crate::mechanics::problem::contact_jacobian;
-use crate::mechanics::problem::equilibrium;
 use crate::mechanics::problem::loading::{LoadPattern, Loading};
 use crate::mechanics::problem::node_contact_forces;
 use crate::mechanics::problem::state::{State, dot};
@@ -116,12 +114,9 @@ impl TimeStepScene {
     fn set_stages(&mut self, trace: &PathTrace<'_>, step: &TimeStep<'_>, unbalanced: &[f64]) {
         let present = &trace.scene.stages[trace.at.stage];
         self.scene.stages.truncate(self.stages);
-        let of = |pattern: LoadPattern, ends: Vec<End>| StageLoad {
-            pattern: Arc::new(pattern),
-            ends,
-            name: Arc::clone(&present.name),
-            control: StageControl::Path,
-            ..present.clone()
+        let of = |pattern: LoadPattern, ends: Vec<End>| {
+            let (pattern, control) = (Arc::new(pattern), StageControl::Path);
+            StageLoad { of_stage: Arc::clone(&pattern), sense: 1.0, pattern, ends, control, ..present.clone() }
         };
         let mut held_back = present.pattern.zeroed();
         held_back.forces.copy_from_slice(unbalanced);
@@ -202,12 +197,7 @@ fn bound(inner: &PathTrace<'_>) -> f64 {
 fn unbalanced(loading: Loading<'_>, state: &State) -> Vec<f64> {
     let structure = loading.structure;
     let mut force = vec![0.0; structure.freedoms()];
-    equilibrium::write_unbalanced(loading, state, &mut force);
-    for (index, reaction) in state.reactions.iter().enumerate().filter(|(_, reaction)| reaction.size() > 0.0) {
-        let on_node = node_contact_forces::force(&loading.frame(index, state), reaction);
-        let contact = &loading.contacts[index];
-        contact_jacobian::add_force(structure, contact, &state.displacement, &on_node, -1.0, &mut force);
-    }
+    node_contact_forces::write_out_of_balance(loading, state, &mut force);
     force.iter_mut().zip(&structure.unknown_of).for_each(|(force, unknown)| {
         *force = if unknown.is_some() { -*force } else { 0.0 };
     });

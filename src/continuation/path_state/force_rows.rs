@@ -7,8 +7,6 @@
 
 use crate::continuation::path_state::row_conversion::RowSource;
 use crate::continuation::scene::Scene;
-use crate::mechanics::contact::vector::dot;
-use crate::mechanics::problem::equilibrium::write_unbalanced;
 use crate::mechanics::problem::node_contact_forces;
 use crate::mechanics::structure::elements::Resultants;
 use crate::mechanics::structure::following_loads;
@@ -76,18 +74,11 @@ pub(crate) fn support_reactions(scene: &Scene, row: &RowSource<'_>) -> NodalValu
     }
     let (structure, loading) = (row.loading.structure, row.loading);
     let mut unbalanced = vec![0.0; structure.freedoms()];
-    write_unbalanced(loading, row.state, &mut unbalanced);
+    node_contact_forces::write_out_of_balance(loading, row.state, &mut unbalanced);
     let in_space = structure.dimension == 3;
     let mut moments = vec![0.0; if in_space { structure.freedoms() } else { 0 }];
     if in_space {
         structure.internal_forces_in_global_axes(&row.state.displacement, &mut moments);
-    }
-    let pressed = row.state.reactions.iter().enumerate().filter(|(_, reaction)| reaction.size() > 0.0);
-    for (contact, reaction) in pressed {
-        let force = node_contact_forces::force(&loading.frame(contact, row.state), reaction);
-        loading.each_column(contact, row.state, |freedom, column| {
-            unbalanced[freedom] -= dot(column, &force);
-        });
     }
     let held = |freedom: usize| structure.unknown_of[freedom].is_none();
     let (force, length) = (scene.plan().force_scale, scene.plan().displacement_scale);

@@ -202,12 +202,23 @@ impl Progress {
 
     /// Sums up the constant load of the previous stages: the same bits whenever it is computed.
     pub fn hold(&mut self, scene: &Scene) {
-        let mut held = scene.stages[0].pattern.zeroed();
-        for (stage, load) in scene.stages.iter().zip(&self.reached) {
-            held.add(*load, &stage.pattern);
-        }
-        self.held = Arc::new(held);
+        self.held = Arc::new(constant_load(scene, &self.reached));
     }
+}
+
+/// The constant load of the stages that ended at these loads, for every contact of the scene.
+pub(crate) fn constant_load(scene: &Scene, reached: &[f64]) -> LoadPattern {
+    let mut held = scene.stages[0].pattern.zeroed();
+    let mut parts = scene.stages.iter().zip(reached).peekable();
+    while let Some((stage, load)) = parts.next() {
+        // The parts of one stage add up to one load, however often it has turned.
+        let mut sum = stage.sense * load;
+        while let Some((part, load)) = parts.next_if(|(next, _)| Arc::ptr_eq(&next.of_stage, &stage.of_stage)) {
+            sum += part.sense * load;
+        }
+        held.add(sum, &stage.of_stage);
+    }
+    held
 }
 
 fn spread(near: &[Reaction], places: &[Option<usize>]) -> Vec<Reaction> {

@@ -342,6 +342,28 @@ impl ScaledModel<'_> {
         let natural = by_force.min(by_motion);
         if natural.is_finite() { natural } else { 1.0 }
     }
+
+    /// The criteria that end a stage.
+    fn ends(&self, stage: &request::Stage, load_scale: f64) -> Vec<End> {
+        let mut ends = Vec::new();
+        if let Some(until) = &stage.until {
+            let load = |bound: f64, sign: f64| End::Load { bound: bound / load_scale, sign };
+            ends.extend(until.load_above.map(|bound| load(bound, 1.0)));
+            ends.extend(until.load_below.map(|bound| load(bound, -1.0)));
+            if let Some(given) = &until.displacement {
+                let place = given.component.place(self.structure.dimension);
+                let freedom = self.structure.freedoms_of(self.numbers[given.node.as_str()]).start + place;
+                let unit = if place < self.structure.dimension { self.length } else { 1.0 };
+                let end = |bound: f64, sign: f64| End::Displacement { freedom, bound: bound / unit, sign };
+                ends.extend(given.above.map(|bound| end(bound, 1.0)));
+                ends.extend(given.below.map(|bound| end(bound, -1.0)));
+            }
+            ends.extend(until.limit_points.map(End::LimitPoints));
+            ends.extend(until.contact_change.map(End::ContactChanges));
+            ends.extend(until.increments.map(End::Increments));
+        }
+        ends
+    }
 }
 
 /// Builds the load of a stage; `resistance` is the force on which its load scale is based.
@@ -388,33 +410,19 @@ pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scal
         }
         shift
     };
-    let pattern = LoadPattern {
+    let pattern = Arc::new(LoadPattern {
         forces,
         supports,
         shifts: first_contacts.iter().map(|contact| shift(&model.contacts[*contact])).collect(),
-    };
-    let mut ends = Vec::new();
-    if let Some(until) = &stage.until {
-        let load = |bound: f64, sign: f64| End::Load { bound: bound / load_scale, sign };
-        ends.extend(until.load_above.map(|bound| load(bound, 1.0)));
-        ends.extend(until.load_below.map(|bound| load(bound, -1.0)));
-        if let Some(given) = &until.displacement {
-            let place = given.component.place(structure.dimension);
-            let freedom = structure.freedoms_of(numbers[given.node.as_str()]).start + place;
-            let unit = if place < structure.dimension { length } else { 1.0 };
-            let end = |bound: f64, sign: f64| End::Displacement { freedom, bound: bound / unit, sign };
-            ends.extend(given.above.map(|bound| end(bound, 1.0)));
-            ends.extend(given.below.map(|bound| end(bound, -1.0)));
-        }
-        ends.extend(until.limit_points.map(End::LimitPoints));
-        ends.extend(until.contact_change.map(End::ContactChanges));
-        ends.extend(until.increments.map(End::Increments));
-    }
+    });
+    let ends = scaled.ends(stage, load_scale);
     let loads = stage.until.as_ref().map(|until| [until.load_above, until.load_below]);
     let given_loads = loads.into_iter().flatten().flatten().collect();
     StageLoad {
         name: Arc::from(stage.name.as_str()),
-        pattern: Arc::new(pattern),
+        of_stage: Arc::clone(&pattern),
+        sense: 1.0,
+        pattern,
         load_scale,
         offset: 0.0,
         control: stage.control,

@@ -111,6 +111,7 @@ fn build_stages(scaled: &ScaledModel<'_>, resistances: &[f64], contacts: usize) 
     for (stage, force) in scaled.model.stages.iter().zip(resistances) {
         let mut built = build_stage(stage, *force, scaled);
         Arc::make_mut(&mut built.pattern).shifts.resize(contacts, [0.0; 3]);
+        built.of_stage = Arc::clone(&built.pattern);
         load_scales.push(built.load_scale);
         parts.extend(built.between_turns(stage));
     }

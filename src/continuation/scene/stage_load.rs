@@ -12,6 +12,9 @@ use std::sync::Arc;
 pub(crate) struct StageLoad {
     pub name: Arc<str>,
     pub pattern: Arc<LoadPattern>,
+    /// The pattern of the whole stage, which all its parts share, and the sense in which this part goes through it, 1 or -1.
+    pub of_stage: Arc<LoadPattern>,
+    pub sense: f64,
     /// Load factor per load; below 0 where the load factor is to fall.
     pub load_scale: f64,
     /// Load factor at which the load begins.
@@ -36,7 +39,7 @@ impl StageLoad {
         }
         let mut reversed = self.pattern.zeroed();
         reversed.add(-1.0, &self.pattern);
-        let reversed = Self { pattern: Arc::new(reversed), load_scale: -self.load_scale, ..self.clone() };
+        let reversed = Self { pattern: Arc::new(reversed), sense: -1.0, load_scale: -self.load_scale, ..self.clone() };
         let towards = |offset: f64, target: f64, turns: bool| {
             let part = if target < offset { &reversed } else { &self };
             let end = End::Load { bound: (target - offset) / part.load_scale, sign: 1.0 };

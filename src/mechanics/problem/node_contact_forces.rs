@@ -3,7 +3,8 @@
 use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::vector::{Vector, add, scaled, size};
 use crate::mechanics::contact::{Frame, Mode, Reaction, Sliding};
-use crate::mechanics::problem::contact_jacobian::AXES;
+use crate::mechanics::problem::contact_jacobian::{self, AXES};
+use crate::mechanics::problem::equilibrium;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::mechanics::problem::tolerances::{CONTACT_TOLERANCE, OPPOSITE_RAY_ANGLE};
@@ -61,6 +62,17 @@ pub(crate) fn move_apart(loading: Loading<'_>, contacts: &[usize]) -> bool {
 /// The total force of an obstacle on its node.
 pub fn force(frame: &Frame, reaction: &Reaction) -> Vector {
     add(&reaction.tangential, reaction.normal, &frame.normal)
+}
+
+/// Writes the out-of-balance force `f_int - s p - h - Σ Bᵀ r` over all degrees of freedom: zero along free ones in
+/// equilibrium, and the force of the supports along the others.
+pub fn write_out_of_balance(loading: Loading<'_>, state: &State, out_of_balance: &mut [f64]) {
+    equilibrium::write_unbalanced(loading, state, out_of_balance);
+    for (contact, reaction) in state.reactions.iter().enumerate().filter(|(_, reaction)| reaction.size() > 0.0) {
+        let on_node = force(&loading.frame(contact, state), reaction);
+        let pair = &loading.contacts[contact];
+        contact_jacobian::add_force(loading.structure, pair, &state.displacement, &on_node, -1.0, out_of_balance);
+    }
 }
 
 /// The rates of the forces of the contacts on their nodes; for a node with several contacts the first of them has the

@@ -36,7 +36,7 @@ fn a_hundred_cycles_are_one_closed_loop() {
     assert_eq!(report.stop_reason, StopReason::StagesCompleted);
     assert!(errors.iter().all(|errors| errors.largest_of_state() <= 1e-10));
     // Each step is held to 1e-8 of all the energy so far.
-    assert!(report.largest_energy_error <= 1e-5, "{report:?}");
+    assert!(report.largest_energy_error <= 2e-6, "{report:?}");
     let jumps = increments.iter().filter(|one| one.point.kind == PointKind::Jump).count();
     assert_eq!(jumps, 200, "one there and one back in each cycle");
     let ends = at_load(&increments, 0.06);

@@ -205,8 +205,8 @@ fn friction_decides_about_a_node_about_to_slip() {
 }
 
 /// A node whose foot slides on a belt, coupled to it by a spring across: with masses 2 along and 1 across the belt, and
-/// `k11/2 = k22 + k3`, the two modes couple and flutter if `k12 (k12 - μ k3) < 0` (mode coupling; M. Hoffmann, N. Fischer,
-/// R. Allgaier, L. Gaul, Mech. Res. Commun. 29 (2002) 197, doi:10.1016/S0093-6413(02)00254-9).
+/// `k11/2 = k22 + k3`, the two modes couple and flutter if `k12 (k12 - μ k3) < 0` (mode coupling; N. Hoffmann, M. Fischer,
+/// R. Allgaier, L. Gaul, Mech. Res. Commun. 29 (2002) 197).
 #[test]
 fn a_foot_on_a_belt_flutters_above_a_known_friction() {
     let on_belt = |friction: f64, sense: f64| {
@@ -232,7 +232,7 @@ fn a_foot_on_a_belt_flutters_above_a_known_friction() {
         last.stability.expect("asked for").instability
     };
     // The friction of a belt that runs to the left pulls the foot to the left.
-    let [left, right] = [-1.0, 1.0].map(|sense| [0.45, 0.55].map(|friction| on_belt(friction, sense)));
+    let [left, right] = [-1.0, 1.0].map(|sense| [0.49, 0.51].map(|friction| on_belt(friction, sense)));
     println!("left {left:?}, right {right:?}");
     let flutters: Vec<bool> = left.iter().chain(&right).map(|found| *found == Some(Instability::Flutter)).collect();
     assert_eq!(flutters.iter().filter(|flutters| **flutters).count(), 1, "in one sense, above 0.5");
