@@ -5,6 +5,7 @@
 mod backup;
 mod check;
 mod convert;
+mod critical_curve;
 mod health;
 mod openapi;
 mod options;
@@ -41,6 +42,7 @@ enum Command {
     Solve(solve::Arguments),
     Study(study::Arguments),
     Sweep(sweep::Arguments),
+    Continue(critical_curve::Arguments),
     Check(check::Arguments),
     Convert(convert::Arguments),
     Scenes(scenes::Arguments),
@@ -66,6 +68,7 @@ fn run_command(command: Command, matches: &ArgMatches) -> Outcome {
         Command::Solve(arguments) => arguments.bounds.within(|| solve::run(&arguments)),
         Command::Study(arguments) => arguments.bounds.within(|| study::run(&arguments)),
         Command::Sweep(arguments) => arguments.bounds.within(|| sweep::run(&arguments)),
+        Command::Continue(arguments) => arguments.bounds.within(|| critical_curve::run(&arguments)),
         Command::Check(arguments) => arguments.bounds.within(|| check::run(&arguments)),
         Command::Convert(arguments) => convert::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),

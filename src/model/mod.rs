@@ -1,11 +1,12 @@
 //! Requests of users, decoded from JSON and checked.
 //!
 //! [`request`], [`study`](request::study) and [`sweep`](request::sweep) have the types of the contract, [`mod@decode`] reads
-//! them from JSON text and reports the place of each mistake, [`runs`] makes the runs of a sweep, [`mod@check`] checks decoded
+//! them from JSON text and reports the place of each mistake, [`runs`] makes the runs of a sweep and [`curves`] the models of a curve, [`mod@check`] checks decoded
 //! requests (unknown names, zero lengths, penetration). [`mesh`] reads mesh files and makes models of them. Nothing here
 //! knows how a path is traced. [`read`] decodes and checks.
 
 pub mod check;
+pub mod curves;
 pub mod decode;
 pub mod input;
 pub mod mesh;
@@ -15,6 +16,7 @@ pub mod runs;
 pub(crate) mod solids;
 mod template;
 
+pub use curves::Curve;
 pub use input::error::{InputError, InputErrors};
 pub use request::study::StudyRequest;
 pub use request::sweep::SweepRequest;

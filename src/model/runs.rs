@@ -217,7 +217,7 @@ fn check_refinement(refine: u64, runs: u64, parameters: &[SweepParameter]) -> Re
 /// a step `*`, unless the object has a member of this name. Members of objects may be missing, items of arrays not.
 ///
 /// There are at most `most`.
-fn places_of(document: &Value, pointer: &str, most: usize) -> Result<Vec<String>, String> {
+pub(super) fn places_of(document: &Value, pointer: &str, most: usize) -> Result<Vec<String>, String> {
     if !["/model/", "/analysis/"].iter().any(|root| pointer.starts_with(root)) {
         return Err("a JSON pointer that begins with `/model/` or `/analysis/` is expected".to_owned());
     }

@@ -12,7 +12,7 @@ use std::path::Path;
 
 const FILE: &str = "src/service/http/document/examples.json";
 /// Calls that are answered without a body, and media types that are no text.
-const WITHOUT_BODY: [&str; 3] = ["delete_job", "delete_study", "delete_sweep"];
+const WITHOUT_BODY: [&str; 4] = ["delete_job", "delete_study", "delete_sweep", "delete_curve"];
 const NO_TEXT: &str = "application/zip";
 
 /// Answers by operation, status and media type.
@@ -139,9 +139,11 @@ async fn recorded(folder: &Path) -> Map<String, Value> {
     all.stream(&server, "stream_changes", "/v1/changes", Some(&beginning)).await;
     let follow = documented("follow_direction");
     all.call(&server, "follow_direction", Method::POST, &format!("{of_job}/follow"), Some(&follow)).await;
+    let curve = documented("continue_job");
+    all.call(&server, "continue_job", Method::POST, &format!("{of_job}/continue"), Some(&curve)).await;
     all.call(&server, "cancel_job", Method::POST, &format!("{of_job}/cancel"), None).await;
 
-    for (kind, plural) in [("study", "studies"), ("sweep", "sweeps")] {
+    for (kind, plural) in [("study", "studies"), ("sweep", "sweeps"), ("curve", "curves")] {
         let submit = format!("submit_{kind}");
         let body = documented(&submit);
         all.call(&server, &submit, Method::POST, &format!("/v1/{plural}?validate=true"), Some(&body)).await;
@@ -153,8 +155,8 @@ async fn recorded(folder: &Path) -> Map<String, Value> {
         for (name, rest) in [("table_csv", "table.csv"), ("table_txt", "table.txt"), ("picture", "picture.svg")] {
             all.get(&server, &format!("get_{kind}_{name}"), &format!("{place}/{rest}")).await;
         }
-        if kind == "sweep" {
-            all.get(&server, "list_sweep_rows", &format!("{place}/rows")).await;
+        if kind != "study" {
+            all.get(&server, &format!("list_{kind}_rows"), &format!("{place}/rows?limit=1")).await;
         }
         all.call(&server, &format!("cancel_{kind}"), Method::POST, &format!("{place}/cancel"), None).await;
     }

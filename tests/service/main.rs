@@ -8,6 +8,7 @@ mod backup;
 mod changes;
 mod checks;
 mod client;
+mod curves;
 mod dashboard;
 mod disk;
 mod errors;

@@ -32,6 +32,7 @@ mod jammed_corners;
 mod judged;
 mod jumps;
 mod keep_all;
+mod limit_curves;
 mod limits_near_critical_friction;
 mod mac_mpec;
 mod many_contacts;

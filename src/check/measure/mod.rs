@@ -317,18 +317,39 @@ impl Judge {
         errors
     }
 
+    /// The errors of a state by itself, before any increment has been judged: of what a path says of its way to the state
+    /// nothing is judged. `stage_ends` are the load factors at which the stages before ended.
+    pub fn judge_state(&mut self, increment: &Increment, stage_ends: &[f64]) -> Errors {
+        for load in stage_ends.iter().take(self.posted.stages.len() - 1) {
+            self.before.load = *load;
+            self.next_stage();
+        }
+        self.read(increment);
+        self.before.displacements.clone_from(&self.work.displacements);
+        self.before.rotations.clone_from(&self.work.rotations);
+        self.before.shifts.copy_from_slice(&self.work.loading.shifts);
+        self.before.load = increment.load_factor;
+        Errors { energy: 0.0, strain_energy: 0.0, ..self.judge(increment) }
+    }
+
+    /// Holds the load of the last increment and goes on to the next stage.
+    fn next_stage(&mut self) {
+        self.work.loading.set(&self.held, &self.posted.stages[self.stage], self.before.load);
+        std::mem::swap(&mut self.held, &mut self.work.loading);
+        self.reached.push(self.before.load);
+        self.stage += 1;
+        self.before.load = 0.0;
+    }
+
     /// Sets the stage, displacements and load of an increment; returns `false` if the increment does not fit the model.
     fn read(&mut self, increment: &Increment) -> bool {
         let posted = &self.posted;
         self.work.rotations.resize(posted.nodes.len(), MeasuredVector::zeros());
         let known = posted.stages[self.stage..].iter().position(|stage| stage.name == *increment.stage);
         for _ in 0..known.unwrap_or(0) {
-            self.work.loading.set(&self.held, &posted.stages[self.stage], self.before.load);
-            std::mem::swap(&mut self.held, &mut self.work.loading);
-            self.reached.push(self.before.load);
-            self.stage += 1;
-            self.before.load = 0.0;
+            self.next_stage();
         }
+        let posted = &self.posted;
         self.work.loading.set(&self.held, &posted.stages[self.stage], increment.load_factor);
         let mut fits = known.is_some();
         match self.rows.read(&increment.contacts) {

@@ -1,4 +1,4 @@
-//! Writes the findings of `study` and `sweep` in the selected format, and shows their progress.
+//! Writes the findings of `study`, `sweep` and `continue` in the selected format, and shows their progress.
 
 use crate::command::output::outcome::Failure;
 use crate::command::output::written::{folders_exist, is_svg, one_on_standard_output, write};
@@ -56,6 +56,16 @@ impl Written {
             None => Ok(()),
         }
     }
+}
+
+/// A count that grows, on a terminal.
+pub fn counter(what: &'static str) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{spinner} {pos} {msg}, {elapsed}")
+        .unwrap_or_else(|_| ProgressStyle::default_spinner());
+    ProgressBar::no_length().with_style(style).with_message(what)
 }
 
 /// The progress bar, on a terminal; the table is only written at the end.

@@ -42,6 +42,7 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
     let arriving = Arriving { modes: here.modes.clone(), load_sign: here.load_sign, counts: trace.at.counts };
     let at_bound = stages::at_bound(trace, &reached.rate);
     let (step, joins) = (reached.step, accepted.joined > 0);
+    let arrival_rate = trace.passed.is_some().then(|| reached.rate.clone());
     let arrived = changes.then(|| trace.at.here.state.reactions.clone());
     let came = Came {
         rate: reached.rate,
@@ -80,6 +81,9 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
         tell_end_of_stage(&mut point, stage);
     }
     let reactions = arrived.filter(|arrived| is_anew(trace, arrived));
+    if let Some(rate) = arrival_rate {
+        trace.note_passed(rate, &arriving.modes, reached.event, point.kind, stage_ends);
+    }
     let row = trace.emit(Emitted {
         before: &before,
         reactions,

@@ -8,6 +8,7 @@ use crate::continuation::increment::{acceptance, stages, step_control};
 use crate::continuation::jump::jump_motion;
 use crate::continuation::path::branch_switching;
 use crate::continuation::path::checkpoint::{self, Checkpoint, CheckpointError};
+use crate::continuation::path_state::passed_points::PassedPoint;
 use crate::continuation::path_state::path_context::PathTrace;
 use crate::continuation::path_state::resumable_state::{Phase, Progress};
 use crate::continuation::scene::Scene;
@@ -54,6 +55,16 @@ impl<'a> Path<'a> {
     /// The iterates of the last increment for which a program was solved; empty where they are not kept.
     pub fn iterates(&self) -> &[ProgramIterate] {
         self.trace.iterates.as_deref().unwrap_or_default()
+    }
+
+    /// Keeps from now on the points at which contacts change, the load turns or a stage ends.
+    pub(crate) fn keep_passed_points(&mut self) {
+        self.trace.passed = Some(Vec::new());
+    }
+
+    /// The points kept so far; empty where they are not kept.
+    pub(crate) fn passed_points(&self) -> &[PassedPoint] {
+        self.trace.passed.as_deref().unwrap_or_default()
     }
 
     /// A checkpoint of the path at its present point; valid after any call of `next`.

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `path_context` | the owner of everything that changes from increment to increment |
 //! | `resumable_state` | everything that determines the continuation of the path: the content of a checkpoint |
+//! | `passed_points` | the points of a path at which something happens, where they are kept |
 //! | `motion` | the motion of a jump, as far as it has come |
 //! | `contact_search` | the contacts in reach |
 //! | `visited_states` | states that the path has left, to detect a cycle |
@@ -16,6 +17,7 @@ pub(crate) mod contact_search;
 pub(crate) mod event_descriptions;
 pub(crate) mod force_rows;
 pub(crate) mod motion;
+pub(crate) mod passed_points;
 pub(crate) mod path_context;
 pub(crate) mod resumable_state;
 pub(crate) mod row_conversion;

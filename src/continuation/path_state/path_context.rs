@@ -7,6 +7,7 @@ use crate::complementarity::rate_search::branch_and_bound::Effort;
 use crate::continuation::path_state::contact_search::{self, FarContacts, Near};
 use crate::continuation::path_state::event_descriptions::describe_motion;
 use crate::continuation::path_state::motion::JumpCause;
+use crate::continuation::path_state::passed_points::PassedPoint;
 use crate::continuation::path_state::resumable_state::{Arriving, Listed, Phase, Progress};
 use crate::continuation::path_state::row_conversion::{self, RowSource};
 use crate::continuation::path_state::visited_states::{ClosedContact, Visited};
@@ -17,7 +18,7 @@ use crate::mechanics::multi_contact::moving_planes::Carried;
 use crate::mechanics::multi_contact::spatial::taken_over;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_contact_forces::{is_in_plane, taken_apart, total_force};
-use crate::mechanics::problem::state::State;
+use crate::mechanics::problem::state::{Rate, State};
 use crate::mechanics::problem::tolerances::NEGLIGIBLE_FORCE;
 use crate::mechanics::structure::Structure;
 use crate::model::request::{OnPathEnd, StageControl};
@@ -27,6 +28,7 @@ use crate::result::increment::{Increment, Point, PointKind, Stability};
 use crate::result::program_iterate::ProgramIterate;
 use crate::result::stop_reason::{Outcome, StopReason};
 use crate::step::corrector::cached_factorisation::CachedFactorisation;
+use crate::step::event_functions::EventFunction;
 use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::Instant;
@@ -49,6 +51,8 @@ pub(crate) struct PathTrace<'a> {
     pub cached: CachedFactorisation,
     /// Iterates of the programs of the last increment, where they are kept.
     pub iterates: Option<Vec<ProgramIterate>>,
+    /// The points passed so far at which something happened, where they are kept.
+    pub passed: Option<Vec<PassedPoint>>,
 }
 
 impl<'a> PathTrace<'a> {
@@ -75,6 +79,7 @@ impl<'a> PathTrace<'a> {
             far,
             cached: CachedFactorisation::default(),
             iterates: None,
+            passed: None,
         }
     }
 
@@ -226,6 +231,22 @@ impl<'a> PathTrace<'a> {
             error_estimate: emitted.error_estimate,
         });
         row
+    }
+
+    /// Keeps the present point, at which a step has arrived along `rate` in `modes`, if something happens there.
+    pub(crate) fn note_passed(
+        &mut self,
+        rate: Rate,
+        modes: &[Mode],
+        event: Option<EventFunction>,
+        kind: PointKind,
+        stage_ends: bool,
+    ) {
+        if event.is_none() && !stage_ends && kind == PointKind::Regular {
+            return;
+        }
+        let point = PassedPoint::at(self.scene, &self.at, rate, modes, event, kind, stage_ends);
+        self.passed.iter_mut().for_each(|passed| passed.push(point.clone()));
     }
 
     /// Whether the present state is stable, where this is asked for; nothing is said of a state that moves.

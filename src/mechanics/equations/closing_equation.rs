@@ -78,6 +78,28 @@ impl ClosingEquation for ArcLengthEquation<'_> {
     }
 }
 
+/// The hyperplane `(u̇, ṡ)·(Δu, Δs) = step` from a state, across a rate of unit arc length.
+#[derive(Debug, Clone, Copy)]
+pub struct HyperplaneEquation<'a> {
+    pub from: &'a State,
+    pub rate: &'a Rate,
+    pub step: f64,
+}
+
+impl ClosingEquation for HyperplaneEquation<'_> {
+    fn value(&self, _system: &ModeSystem<'_>, state: &State) -> f64 {
+        self.from.product_of_chord(state, self.rate) - self.step
+    }
+
+    fn write_gradient(&self, system: &ModeSystem<'_>, _state: &State, matrix: &mut dyn Sink) {
+        matrix::border_along(system, matrix, |freedom| self.rate.displacement[freedom], self.rate.load);
+    }
+
+    fn straight_way(&self, _state: &State, _rate: &Rate) -> Option<f64> {
+        Some(self.step)
+    }
+}
+
 /// A prescribed load factor or displacement.
 #[derive(Debug, Clone, Copy)]
 pub enum PrescribedValue {

@@ -133,6 +133,8 @@ pub struct ModeSystem<'a> {
     pub(crate) size: usize,
     /// Rate of the path at the anchor, where it is known.
     pub(crate) along: Option<&'a Rate>,
+    /// A point near by, and the chord to the guess, from which forces in elements start instead.
+    beside: Option<(&'a State, &'a Rate)>,
     /// Whether a step shorter than the required one serves as well.
     pub(crate) may_be_shorter: bool,
     /// Suppressed motions: see `null_motion_suppression`.
@@ -195,6 +197,7 @@ impl<'a> ModeSystem<'a> {
             first_of,
             size: next,
             along: None,
+            beside: None,
             may_be_shorter: false,
             suppressed: Vec::new(),
             holdings: OnceCell::new(),
@@ -205,6 +208,12 @@ impl<'a> ModeSystem<'a> {
     /// The same equations, for iterations along a path of this rate at the anchor.
     pub fn along(self, rate: &'a Rate) -> Self {
         Self { along: Some(rate), ..self }
+    }
+
+    /// The same equations, for iterations that start near a converged point other than the anchor; `chord` leads from it to
+    /// the guess.
+    pub(crate) fn beside(self, point: &'a State, chord: &'a Rate) -> Self {
+        Self { beside: Some((point, chord)), ..self }
     }
 
     /// Number of unknowns.
@@ -269,13 +278,14 @@ impl<'a> ModeSystem<'a> {
     /// more than the solution's do. Without the change along the path, a step from a bifurcation point would begin at
     /// the critical forces, with singular equations.
     pub(crate) fn begin_iteration(&self, guess: &mut Iterate) {
-        let Self { anchor, loading, .. } = self;
-        guess.forces = IndependentForces::at(loading.structure, &anchor.displacement);
-        if let (Some(forces), Some(rate)) = (&mut guess.forces, self.along) {
+        let Self { loading, .. } = self;
+        let (from, along) = self.beside.map_or((self.anchor, self.along), |(point, chord)| (point, Some(chord)));
+        guess.forces = IndependentForces::at(loading.structure, &from.displacement);
+        if let (Some(forces), Some(rate)) = (&mut guess.forces, along) {
             let square = rate.product(rate);
             if square > 0.0 {
-                let length = anchor.product_of_chord(&guess.state, rate) / square;
-                forces.advance(loading.structure, &anchor.displacement, |freedom| length * rate.displacement[freedom]);
+                let length = from.product_of_chord(&guess.state, rate) / square;
+                forces.advance(loading.structure, &from.displacement, |freedom| length * rate.displacement[freedom]);
             }
         }
     }

@@ -4,6 +4,7 @@
 //! because it stops at the first mistake and does not report its place.
 
 mod analysis;
+mod curve;
 mod follow;
 mod meshes;
 mod model;
@@ -18,11 +19,14 @@ mod tests;
 
 use crate::model::input::json::Json;
 use crate::model::input::mistakes::Mistakes;
+use crate::model::request::curve::CurveSettings;
 use crate::model::{Analysis, FollowRequest, InputError, InputErrors, JobRequest, Model, StudyRequest};
 use reader::{Fields, Input, Object};
 
 const JOB_REQUEST: Fields = Fields { what: "a job request", known: &["model", "analysis"], later: &[] };
 const SWEEP_REQUEST: Fields = Fields { what: "a sweep", known: &["model", "analysis", "sweep"], later: &[] };
+const CURVE_REQUEST: Fields =
+    Fields { what: "a curve of limit points", known: &["model", "analysis", "curve"], later: &[] };
 const STUDY_REQUEST: Fields = Fields { what: "a study", known: &["model", "analysis", "study"], later: &[] };
 
 /// Reads a job request from JSON text and only checks its form; [`crate::model::check::check`] checks the rest.
@@ -57,6 +61,30 @@ pub fn replacements(text: &[u8]) -> Result<sweep::Form, InputErrors> {
         }
         object.required("sweep", mistakes, sweep::sweep)
     })
+}
+
+/// Reads the settings in the JSON text of a curve of limit points; its model is read later, with the values inserted.
+///
+/// # Errors
+/// As for [`decode`].
+pub fn curve(text: &[u8]) -> Result<CurveSettings, InputErrors> {
+    read(text, CURVE_REQUEST.what, |input, mistakes| {
+        let object = request(input, &CURVE_REQUEST, mistakes)?;
+        object.required("model", mistakes, |_, _| Some(()))?;
+        if !input.has("curve") {
+            let example = r#"{"parameter": "/model/contacts/0/friction", "range": [0.1, 0.5]}"#;
+            return input.note(&format!("the field `curve` is missing; it says what varies, as `{example}`"), mistakes);
+        }
+        object.required("curve", mistakes, curve::curve)
+    })
+}
+
+/// Reads the settings of a curve of limit points by themselves, as `POST /v1/jobs/{id}/continue` takes them.
+///
+/// # Errors
+/// As for [`decode`].
+pub fn curve_settings(text: &[u8]) -> Result<CurveSettings, InputErrors> {
+    read(text, "what a curve follows", curve::curve)
 }
 
 /// The outermost object of a document, which can be changed before it is decoded.

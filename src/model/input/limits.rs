@@ -63,6 +63,8 @@ pub const MAX_STUDY_VALUES: f64 = 5e7;
 
 /// Runs of a sweep.
 pub const MAX_SWEEP_RUNS: u64 = 100_000;
+/// Points of a curve of limit points at its longest step, without the points where it changes.
+pub const MAX_CURVE_POINTS: u64 = 10_000;
 /// Places of a document into which a sweep puts values, those that a step `*` stands for among them.
 pub const MAX_SWEEP_PLACES: usize = 250_000;
 /// Responses of a sweep.

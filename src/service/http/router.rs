@@ -2,7 +2,7 @@
 
 use crate::service::http::access::{admission, headers};
 use crate::service::http::calls::{
-    changes, follow, increments, jobs, metrics, openapi, probes, request, scenes, studies, sweeps,
+    changes, curves, follow, increments, jobs, metrics, openapi, probes, request, scenes, studies, sweeps,
 };
 use crate::service::http::input::parameters::{self, CallsWithoutParameters};
 use crate::service::http::state::service::Service;
@@ -45,6 +45,15 @@ fn api() -> OpenApiRouter<Service> {
         .routes(routes!(sweeps::table_csv))
         .routes(routes!(sweeps::table_txt))
         .routes(routes!(sweeps::picture))
+        .routes(routes!(curves::submit, curves::list))
+        .routes(routes!(curves::continue_job))
+        .routes(routes!(curves::get, curves::delete))
+        .routes(routes!(curves::cancel))
+        .routes(routes!(curves::rows))
+        .routes(routes!(curves::stream))
+        .routes(routes!(curves::table_csv))
+        .routes(routes!(curves::table_txt))
+        .routes(routes!(curves::picture))
         .routes(routes!(changes::changes))
         .routes(routes!(scenes::list))
         .routes(routes!(scenes::get))

@@ -1,8 +1,9 @@
-//! The findings of studies and sweeps as tables and pictures; called by `command` and `http`.
+//! The findings of studies, sweeps and curves as tables and pictures; called by `command` and `http`.
 
+use crate::studies::critical_curves::CurveFound;
 use crate::studies::error_against_time::StudyReport;
 use crate::studies::error_against_time::table;
-use crate::studies::picture::{PlotError, study, sweep};
+use crate::studies::picture::{PlotError, critical_curve, study, sweep};
 use crate::studies::sweeps::Found;
 use serde::Serialize;
 
@@ -43,6 +44,22 @@ impl Findings for StudyReport {
 
     fn svg(&self) -> Result<String, PlotError> {
         study::svg(self)
+    }
+}
+
+impl Findings for CurveFound {
+    const NOT_DRAWN: &'static str = "no point of it has been found yet";
+
+    fn csv(&self) -> serde_json::Result<String> {
+        self.csv()
+    }
+
+    fn text(&self) -> serde_json::Result<String> {
+        self.text()
+    }
+
+    fn svg(&self) -> Result<String, PlotError> {
+        critical_curve::svg(self)
     }
 }
 

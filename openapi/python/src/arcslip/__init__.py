@@ -18,7 +18,7 @@
 `solve` runs the program `arcslip`; `Client` talks to a running service. Both give a `Path`.
 """
 
-from arcslip.client import Client, Job, Study, Sweep
+from arcslip.client import Client, Curve, Job, Study, Sweep
 from arcslip.errors import (
     ArcslipError, InvalidModel, JobFailed, Mistake, ProgramFailed, ProgramNotFound, Refused, Unreachable,
 )
@@ -27,7 +27,7 @@ from arcslip.path import Path
 from arcslip.program import find_program, scene, solve
 
 __all__ = [
-    "ArcslipError", "Client", "InvalidModel", "Job", "JobFailed", "Mistake", "Model", "Path", "ProgramFailed",
+    "ArcslipError", "Client", "Curve", "InvalidModel", "Job", "JobFailed", "Mistake", "Model", "Path", "ProgramFailed",
     "ProgramNotFound", "Refused", "Study", "Sweep", "Unreachable", "__version__", "find_program", "scene", "solve",
 ]
 

@@ -128,6 +128,17 @@ class Client:
         request["study"] = plain(settings or {})
         return Study(self, self.post("/v1/studies", request, key))
 
+    def curve(
+        self, model: Union[Model, Mapping[str, Any]], parameter: str, values: Sequence[float], *, step: Optional[float] = None,
+        limit_point: Optional[int] = None, increment: Optional[int] = None, key: Optional[str] = None, **analysis: Any
+    ) -> "Curve":
+        """Queues a curve of limit points: a limit point of the model's path as the number at a JSON pointer, such as
+        `/model/contacts/0/friction`, varies between two values, with the model's own among them. `limit_point` counts from
+        1 along the path, `increment` is that of a limit point; without either it is the first one."""
+        request = as_request(model, analysis)
+        request["curve"] = curve_settings(parameter, values, step, limit_point, increment)
+        return Curve(self, self.post("/v1/curves", request, key))
+
     # Calls ------------------------------------------------------------------------------------------------------------
 
     def get(self, path: str) -> Any:
@@ -332,6 +343,14 @@ class Job(Resource):
             request["max_increments"] = int(max_increments)
         return Job(self.client, self.client.post(f"{self.address}/follow", request, key), self.request)
 
+    def limit_curve(
+        self, parameter: str, values: Sequence[float], *, step: Optional[float] = None, limit_point: Optional[int] = None,
+        increment: Optional[int] = None, key: Optional[str] = None
+    ) -> "Curve":
+        """Queues a curve of a limit point of this job; see `Client.curve`."""
+        request = curve_settings(parameter, values, step, limit_point, increment)
+        return Curve(self.client, self.client.post(f"{self.address}/continue", request, key))
+
     def branches(self) -> List["Job"]:
         """The jobs that follow directions of this one."""
         return list(self.client.jobs(parent=self.id))
@@ -380,6 +399,54 @@ class Sweep(Resource):
     def jobs(self) -> List[Job]:
         """The runs as jobs."""
         return list(self.client.jobs(sweep=self.id))
+
+
+def curve_settings(
+    parameter: str, values: Sequence[float], step: Optional[float], limit_point: Optional[int], increment: Optional[int]
+) -> Dict[str, Any]:
+    """What a curve follows, as a request has it."""
+    given = {"step": step, "limit_point": limit_point, "increment": increment}
+    optional = {name: plain(value) for name, value in given.items() if value is not None}
+    return {"parameter": parameter, "range": [float(value) for value in values], **optional}
+
+
+class Curve(Resource):
+    """A curve of limit points over a parameter of the model."""
+
+    folder = "curves"
+
+    def rows(self) -> List[Dict[str, Any]]:
+        """The points found so far, by value: `value`, `load_factor`, `kind`, `displacements`, `event` and so on."""
+        rows: List[Dict[str, Any]] = []
+        after = ""
+        while True:
+            page = self.client.get(f"{self.address}/rows{after}")
+            if not page["rows"]:
+                return sorted(rows, key=lambda row: (row["value"], row["index"]))
+            rows += page["rows"]
+            after = f"?after={page['next_after']}"
+
+    def to_frame(self) -> Any:
+        """The points as a table of pandas: `value`, `load_factor`, `kind`, `codimension_two`, `event`, and the displacements in
+        columns such as `tip.x`."""
+        import pandas
+
+        table = []
+        is_plane = self.refresh()["plan"]["dimension"] == 2
+        axes = ("x", "y", "rz") if is_plane else ("x", "y", "z", "rx", "ry", "rz")
+        for row in self.rows():
+            own = {name: row.get(name) for name in ("index", "value", "load_factor", "kind", "stage", "event")}
+            moved = {
+                f"{node}.{axis}": component
+                for node, components in row["displacements"].items()
+                for axis, component in zip(axes, components)
+            }
+            table.append({**own, "codimension_two": bool(row.get("codimension_two")), **moved})
+        return pandas.DataFrame(table)
+
+    def report(self) -> Dict[str, Any]:
+        """How it ended in both directions, once it has."""
+        return self.refresh().get("report") or {}
 
 
 class Study(Resource):

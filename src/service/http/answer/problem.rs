@@ -85,7 +85,7 @@ impl Kind {
                 ("/problems/invalid-parameter", StatusCode::BAD_REQUEST, "A parameter or header is not valid")
             }
             Self::NotFollowable => {
-                ("/problems/not-followable", StatusCode::UNPROCESSABLE_ENTITY, "There is no such direction to follow")
+                ("/problems/not-followable", StatusCode::UNPROCESSABLE_ENTITY, "There is nothing to follow")
             }
             Self::NotRetryable => ("/problems/not-retryable", StatusCode::CONFLICT, "This job cannot be queued again"),
             Self::CheckTime => {
@@ -251,6 +251,7 @@ impl From<JobsError> for Problem {
             JobsError::NoJob(id) => Self::not_found(format_args!("job {id}")),
             JobsError::NoStudy(id) => Self::not_found(format_args!("study {id}")),
             JobsError::NoSweep(id) => Self::not_found(format_args!("sweep {id}")),
+            JobsError::NoCurve(id) => Self::not_found(format_args!("curve {id}")),
             JobsError::Store(error) => error.into(),
             JobsError::Task(_) | JobsError::Write(_) => {
                 tracing::error!(%error, "a request failed");

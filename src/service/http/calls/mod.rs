@@ -1,6 +1,7 @@
 //! The calls: a function for each operation, with its OpenAPI description.
 
 pub mod changes;
+pub mod curves;
 pub mod follow;
 pub mod increments;
 pub mod jobs;

@@ -1,16 +1,16 @@
 //! Sweeps: submit, list, read, follow, cancel, delete; their rows, table and picture.
 
 use crate::model::SweepRequest;
-use crate::service::http::answer::problem::{Kind, Problem};
+use crate::service::http::answer::problem::Problem;
 use crate::service::http::document;
-use crate::service::http::input::extract::{Parameters, QueryParameters, bounded, index};
+use crate::service::http::input::extract::{Parameters, bounded, index};
 use crate::service::http::state::service::Service;
-use crate::service::http::tasks::findings::{FindingsSoFar, StoredFindings, WithFindings};
+use crate::service::http::tasks::findings::{FindingsSoFar, MOST_OF_A_TABLE, StoredFindings, WithFindings, too_large};
 use crate::service::http::tasks::requester::{ListByStatus, Requester};
 use crate::service::http::tasks::resource::Resource;
 use crate::service::http::tasks::stream::stream_lines;
 use crate::service::http::tasks::submission::{Submission, SubmitParameters};
-use crate::service::http::tasks::target::Target;
+use crate::service::http::tasks::target::{MOST_ROWS, RowParameters, Target};
 use crate::service::http::view::stream::ServerEvent;
 use crate::service::http::view::sweep::{ListedSweep, Sweep, SweepList, SweepPlan, SweepRows, address};
 use crate::service::jobs::queue::sweeps;
@@ -20,12 +20,7 @@ use crate::studies::sweeps::{Found, Row};
 use axum::Json;
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
-use serde::Deserialize;
 use uuid::Uuid;
-
-const ROWS: u32 = 1_000;
-/// Bytes of the rows of a table or picture, which are held in memory.
-const MOST_OF_A_TABLE: usize = 64 << 20;
 
 impl Resource for Sweep {
     const TASK: Task = Task::Sweep;
@@ -60,9 +55,7 @@ impl WithFindings for Sweep {
         let lines = target.service.jobs.lines(id, None, MOST_OF_A_TABLE).await?;
         let bytes = sweep.bytes() + lines.iter().map(|line| line.body.len()).sum::<usize>();
         if bytes > MOST_OF_A_TABLE {
-            let rows = address(id) + "/rows";
-            let detail = format!("its rows have more than {MOST_OF_A_TABLE} bytes; read them page by page at {rows}");
-            return Err(Problem::new(Kind::AnswerTooLarge, detail));
+            return Err(too_large(&(address(id) + "/rows")));
         }
         let is_finished = sweep.status.is_ended();
         Ok(StoredFindings { bytes, is_finished, read: Box::new(move || Ok(sweeps::found(sweep, &lines)?)) })
@@ -109,22 +102,6 @@ pub async fn get(target: Target<Sweep>) -> Result<Response, Problem> {
     target.shown::<Sweep>(sweep).await
 }
 
-#[derive(Debug, Deserialize, utoipa::IntoParams)]
-#[serde(deny_unknown_fields)]
-#[into_params(parameter_in = Query)]
-pub struct RowParameters {
-    /// Only rows past this place: `next_after` of the page before.
-    after: Option<u64>,
-    /// Rows at most.
-    #[param(minimum = 1, maximum = 1_000, default = 1_000)]
-    limit: Option<u32>,
-}
-
-impl QueryParameters for RowParameters {
-    const EXPECTED: &'static [(&'static str, &'static str)] =
-        &[("after", "the place of a row, 0 or more,"), ("limit", "a whole number from 1 to 1000")];
-}
-
 /// Runs that have ended so far, in the order in which they did.
 #[utoipa::path(
     get, path = "/v1/sweeps/{id}/rows", tag = document::SWEEPS, operation_id = "list_sweep_rows",
@@ -136,7 +113,7 @@ pub async fn rows(
     Parameters(parameters): Parameters<RowParameters>,
 ) -> Result<Response, Problem> {
     let after = index("after", parameters.after)?;
-    let limit = bounded("limit", parameters.limit, ROWS, ROWS)?;
+    let limit = bounded("limit", parameters.limit, MOST_ROWS, MOST_ROWS)?;
     target.lines(after, limit, |rows, next_after| SweepRows { rows, next_after }).await
 }
 

@@ -15,6 +15,7 @@ pub const JOBS: &str = "jobs";
 pub const INCREMENTS: &str = "increments";
 pub const STUDIES: &str = "studies";
 pub const SWEEPS: &str = "sweeps";
+pub const CURVES: &str = "curves";
 pub const SCENES: &str = "scenes";
 pub const PROBES: &str = "probes";
 
@@ -53,6 +54,7 @@ const TOKEN: &str = "token";
         (name = INCREMENTS, description = "Points of a path, as they converge or later"),
         (name = STUDIES, description = "One scene over a ladder of settings and over methods: error against run time"),
         (name = SWEEPS, description = "One model with other values in its places: limit loads"),
+        (name = CURVES, description = "Limit points followed in a parameter of a model"),
         (name = SCENES, description = "Built-in models, ready to post"),
         (name = PROBES, description = "For whoever runs the service"),
     )

@@ -13,14 +13,16 @@ use utoipa::openapi::{
 };
 
 /// The resources: the beginning of their addresses, and their names.
-const RESOURCES: [(&str, &str); 3] = [("/v1/jobs", "job"), ("/v1/studies", "study"), ("/v1/sweeps", "sweep")];
+const RESOURCES: [(&str, &str); 4] =
+    [("/v1/jobs", "job"), ("/v1/studies", "study"), ("/v1/sweeps", "sweep"), ("/v1/curves", "curve")];
 /// Calls that queue a new resource.
-const QUEUEING: [&str; 4] = ["submit_job", "submit_study", "submit_sweep", "follow_direction"];
+const QUEUEING: [&str; 6] =
+    ["submit_job", "submit_study", "submit_sweep", "submit_curve", "follow_direction", "continue_job"];
 /// The call that queues a known resource again.
 const QUEUEING_AGAIN: &str = "retry_job";
 
 /// Calls whose answers carry an entity tag once their resource has ended.
-const TAGGED: [&str; 17] = [
+const TAGGED: [&str; 22] = [
     "get_job",
     "get_request",
     "list_increments",
@@ -38,9 +40,14 @@ const TAGGED: [&str; 17] = [
     "get_sweep_table_csv",
     "get_sweep_table_txt",
     "get_sweep_picture",
+    "get_curve",
+    "list_curve_rows",
+    "get_curve_table_csv",
+    "get_curve_table_txt",
+    "get_curve_picture",
 ];
 /// The calls that take the id of a job that has been queued.
-const OF_A_JOB: [&str; 13] = [
+const OF_A_JOB: [&str; 14] = [
     "get_job",
     "get_request",
     "list_increments",
@@ -51,6 +58,7 @@ const OF_A_JOB: [&str; 13] = [
     "get_results_parquet",
     "stream_increments",
     "follow_direction",
+    "continue_job",
     "cancel_job",
     "retry_job",
     "delete_job",
@@ -76,10 +84,23 @@ const OF_A_SWEEP: [&str; 8] = [
     "cancel_sweep",
     "delete_sweep",
 ];
+/// The calls that take the id of a curve.
+const OF_A_CURVE: [&str; 8] = [
+    "get_curve",
+    "list_curve_rows",
+    "stream_curve",
+    "get_curve_table_csv",
+    "get_curve_table_txt",
+    "get_curve_picture",
+    "cancel_curve",
+    "delete_curve",
+];
 /// Answers by operation, status and media type, and a `problem`; written by a test.
 const EXAMPLES: &str = include_str!("examples.json");
 /// The built-in scene in the examples.
 const EXAMPLE: &str = "klarbring";
+/// What varies in the examples.
+const FRICTION: &str = "/model/contacts/0/friction";
 
 /// Completes the description of the operation at an address.
 pub(super) fn complete(path: &str, operation: &mut Operation) -> serde_json::Result<()> {
@@ -121,8 +142,18 @@ pub(super) fn complete(path: &str, operation: &mut Operation) -> serde_json::Res
         "submit_sweep" => {
             leads_to(operation, &OF_A_SWEEP);
             let mut sweep = scene()?;
-            sweep["sweep"] = json!({"replace": {"/model/contacts/0/friction": [1.5, 2.0]}, "combine": "grid"});
+            sweep["sweep"] = json!({"replace": {FRICTION: [1.5, 2.0]}, "combine": "grid"});
             exemplified(operation, sweep);
+        }
+        "submit_curve" => {
+            leads_to(operation, &OF_A_CURVE);
+            let mut curve = scene()?;
+            curve["curve"] = json!({"parameter": FRICTION, "range": [1.4, 1.8], "step": 0.1});
+            exemplified(operation, curve);
+        }
+        "continue_job" => {
+            leads_to(operation, &OF_A_CURVE);
+            exemplified(operation, json!({"parameter": FRICTION, "range": [1.4, 1.8], "step": 0.1}));
         }
         "follow_direction" => {
             leads_to(operation, &OF_A_JOB);

@@ -1,4 +1,4 @@
-//! The findings of studies and sweeps, as tables and as a picture.
+//! The findings of studies, sweeps and curves, as tables and as a picture.
 
 use crate::service::http::answer::problem::{Kind, Problem};
 use crate::service::http::answer::tag;
@@ -46,7 +46,16 @@ impl<T: WithFindings> Target<T> {
     }
 }
 
-/// The findings of a study or sweep so far.
+/// Bytes of the rows of a table or picture, which are held in memory.
+pub(crate) const MOST_OF_A_TABLE: usize = 64 << 20;
+
+/// The problem of rows that are too many for a table or picture; `rows` is the address of their pages.
+pub(crate) fn too_large(rows: &str) -> Problem {
+    let detail = format!("its rows have more than {MOST_OF_A_TABLE} bytes; read them page by page at {rows}");
+    Problem::new(Kind::AnswerTooLarge, detail)
+}
+
+/// The findings of a study, sweep or curve so far.
 pub(crate) struct FindingsSoFar<F> {
     pub task: Task,
     pub id: Uuid,
@@ -91,7 +100,7 @@ impl<F: Findings> FindingsSoFar<F> {
                     "the log of the service has details under the x-request-id of this answer",
                 ))
             }
-            Err(PlotError::NoErrors | PlotError::Empty | PlotError::NothingFound { .. }) => {
+            Err(PlotError::NoErrors | PlotError::NoPoints | PlotError::Empty | PlotError::NothingFound { .. }) => {
                 Err(Problem::not_found(format_args!("picture of {task} {id}: {}", F::NOT_DRAWN)))
             }
         }

@@ -10,6 +10,7 @@ use crate::service::http::input::extract::last_event_id;
 use crate::service::http::state::service::Service;
 use crate::service::http::tasks::resource::Resource;
 use crate::service::http::tasks::target::Target;
+use crate::service::http::view::curve::Curve;
 use crate::service::http::view::job::Job;
 use crate::service::http::view::study::StudyWithReport;
 use crate::service::http::view::sweep::Sweep;
@@ -41,7 +42,7 @@ const RETRY: Duration = Duration::from_secs(2);
 pub(super) const INTERRUPTED: &str = "the service shuts down or its tokens have changed; reconnect";
 pub(super) const UNAVAILABLE: &str = "the store is not available; reconnect";
 
-/// Streams the stored lines of a job, study or sweep as they come: its increments or its rows.
+/// Streams the stored lines of a job, study, sweep or curve as they come: its increments or its rows.
 pub async fn stream_lines<T: Resource>(target: Target<T>) -> Result<Response, Problem> {
     let (task, format) = (T::TASK, Format::accepted(&target.headers)?);
     let after = last_event_id(event_name(task), &target.headers)?;
@@ -257,7 +258,7 @@ pub(super) fn come_back(why: &str) -> String {
 fn event_name(task: Task) -> &'static str {
     match task {
         Task::Path => "increment",
-        Task::Study | Task::Sweep => "row",
+        Task::Study | Task::Sweep | Task::Curve => "row",
     }
 }
 
@@ -266,14 +267,15 @@ fn end(task: Task, job: JobRecord) -> serde_json::Result<String> {
         Task::Path => serde_json::to_string(&Job::try_from(job)?),
         Task::Study => serde_json::to_string(&StudyWithReport::try_from(job)?),
         Task::Sweep => serde_json::to_string(&Sweep::try_from(job)?),
+        Task::Curve => serde_json::to_string(&Curve::try_from(job)?),
     }
 }
 
-/// The line after the last row of a study or sweep; a path has none, as its last increment shows that it is the last.
+/// The line after the last row of a study, sweep or curve; a path has none, as its last increment shows that it is the last.
 fn closing_line(task: Task, written: serde_json::Result<String>) -> Option<io::Result<String>> {
     match task {
         Task::Path => None,
-        Task::Study | Task::Sweep => Some(written.map(|whole| whole + "\n").map_err(|error| {
+        Task::Study | Task::Sweep | Task::Curve => Some(written.map(|whole| whole + "\n").map_err(|error| {
             tracing::error!(%error, "the end cannot be written");
             io::Error::other("the result cannot be read")
         })),

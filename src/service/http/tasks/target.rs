@@ -2,7 +2,7 @@
 
 use crate::service::http::answer::problem::Problem;
 use crate::service::http::answer::tag;
-use crate::service::http::input::extract::JobId;
+use crate::service::http::input::extract::{JobId, QueryParameters};
 use crate::service::http::state::service::Service;
 use crate::service::http::tasks::requester::Requester;
 use crate::service::http::tasks::resource::{Resource, View};
@@ -13,13 +13,32 @@ use axum::extract::FromRequestParts;
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use std::marker::PhantomData;
 use uuid::Uuid;
 
 /// A page of stored lines ends early when they are large.
 const LINE_BYTES: usize = 1 << 20;
+
+/// The most rows of a page.
+pub const MOST_ROWS: u32 = 1_000;
+
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub struct RowParameters {
+    /// Only rows past this place: `next_after` of the page before.
+    pub after: Option<u64>,
+    /// Rows at most.
+    #[param(minimum = 1, maximum = 1_000, default = 1_000)]
+    pub limit: Option<u32>,
+}
+
+impl QueryParameters for RowParameters {
+    const EXPECTED: &'static [(&'static str, &'static str)] =
+        &[("after", "the place of a row, 0 or more,"), ("limit", "a whole number from 1 to 1000")];
+}
 
 /// The resource that a request is about, and the caller of the request.
 pub struct Target<T> {

@@ -1,8 +1,8 @@
-//! Changes of jobs, studies and sweeps, as the feed has them.
+//! Changes of jobs, studies, sweeps and curves, as the feed has them.
 
 use crate::service::http::view::job::{Parent, RunOf};
 use crate::service::http::view::submitted::Submitted;
-use crate::service::http::view::{job, study, sweep};
+use crate::service::http::view::{curve, job, study, sweep};
 use crate::service::store::{FeedPosition, JobRecord, Task};
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -15,6 +15,7 @@ pub enum TaskKind {
     Job,
     Study,
     Sweep,
+    Curve,
 }
 
 impl From<Task> for TaskKind {
@@ -23,11 +24,12 @@ impl From<Task> for TaskKind {
             Task::Path => Self::Job,
             Task::Study => Self::Study,
             Task::Sweep => Self::Sweep,
+            Task::Curve => Self::Curve,
         }
     }
 }
 
-/// A job, study or sweep after a change of its status or progress; several changes shortly after one another are told as one.
+/// A job, study, sweep or curve after a change of its status or progress; several changes shortly after one another are told as one.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct ChangedTask {
     pub kind: TaskKind,
@@ -46,13 +48,14 @@ pub struct ChangedTask {
 /// How far it is.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Done {
-    /// Of a job, increments after the first point; of a study, rows; of a sweep, runs that have ended.
+    /// Of a job, increments after the first point; of a study, rows; of a sweep, runs that have ended; of a curve,
+    /// points.
     pub done: u64,
-    /// The most that there will be.
+    /// The most that there will be; a curve may have more.
     pub of: u64,
 }
 
-/// A job, study or sweep that was deleted.
+/// A job, study, sweep or curve that was deleted.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct DeletedTask {
     pub kind: TaskKind,
@@ -82,6 +85,7 @@ impl From<JobRecord> for ChangedTask {
             Task::Path => job::address(record.id),
             Task::Study => study::address(record.id),
             Task::Sweep => sweep::address(record.id),
+            Task::Curve => curve::address(record.id),
         };
         Self {
             kind: record.task.into(),

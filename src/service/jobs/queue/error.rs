@@ -31,6 +31,8 @@ pub enum JobsError {
     NoStudy(Uuid),
     #[error("no sweep {0}")]
     NoSweep(Uuid),
+    #[error("no curve {0}")]
+    NoCurve(Uuid),
     #[error(transparent)]
     Store(#[from] StoreError),
     #[error("a task ended early: {0}")]

@@ -137,5 +137,6 @@ fn absent(task: Task, id: Uuid) -> JobsError {
         Task::Path => JobsError::NoJob(id),
         Task::Study => JobsError::NoStudy(id),
         Task::Sweep => JobsError::NoSweep(id),
+        Task::Curve => JobsError::NoCurve(id),
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod caller;
 pub mod checks;
+pub mod curves;
 pub mod demonstration;
 pub mod error;
 pub mod fair_semaphore;

@@ -3,7 +3,7 @@
 //! The solve sends its increments over a bounded channel: a slow store makes the solver wait instead of filling the memory. A
 //! panic is caught here and becomes the error of the job.
 
-use crate::model::decode;
+use crate::model::{Curve, decode};
 use crate::resources::budget::{Breach, Budget};
 use crate::resources::cancel::CancelFlag;
 use crate::resources::panics;
@@ -39,7 +39,8 @@ pub struct Solve {
 }
 
 /// Starts the thread. A path resumes from its checkpoint, or starts again if there is none that can be read; increments up to
-/// `claim.last` are stored already and not sent again. A study resumes from `stored`, the lines of its finished runs.
+/// `claim.last` are stored already and not sent again. A study resumes from `stored`, the lines of its finished runs; a curve
+/// begins anew, and its `stored` points are not sent again.
 /// Checkpoints are at least the flush interval apart.
 pub fn start(context: SolveContext, claim: &Claim, stored: Vec<Line>, cancel: CancelFlag) -> std::io::Result<Solve> {
     let (sender, sent) = mpsc::channel(places(claim.request.len()));
@@ -56,6 +57,7 @@ pub fn start(context: SolveContext, claim: &Claim, stored: Vec<Line>, cancel: Ca
                 // Workers claim the runs of a sweep, not the sweep.
                 Task::Sweep => SolveEnd::Silent,
                 Task::Study => study(context.solver.as_ref(), &claim_of_thread, &stored, &cancel, &sender),
+                Task::Curve => curve(context.solver.as_ref(), &claim_of_thread, &stored, &cancel, &sender),
             };
             let ended = match catch_unwind(AssertUnwindSafe(|| budget.during(solve))) {
                 Ok(Ok(ended)) => ended,
@@ -145,5 +147,48 @@ fn study(
         (None, Ok(None)) if cancel.is_cancelled() => SolveEnd::Cancelled,
         (None, Ok(None)) => SolveEnd::Silent,
         (None, Err(errors)) => SolveEnd::Refused(errors),
+    }
+}
+
+/// Points come out the same again, bit for bit, so that a curve that is resumed begins anew: it takes seconds.
+fn curve(
+    solver: &dyn Solver,
+    claim: &Claim,
+    stored: &[Line],
+    cancel: &CancelFlag,
+    sender: &mpsc::Sender<SolveOutput>,
+) -> SolveEnd {
+    let curve = match Curve::read(claim.request.as_bytes()) {
+        Ok(curve) => curve,
+        Err(errors) => return SolveEnd::Refused(errors),
+    };
+    let mut failed = None;
+    let found = solver.curve(&curve, cancel, &mut |row| {
+        let body = match serde_json::to_string(row) {
+            Ok(body) => body,
+            Err(error) => {
+                failed = Some(SolveEnd::Unwritable(error.to_string()));
+                return ControlFlow::Break(());
+            }
+        };
+        match stored.get(usize::try_from(row.index).unwrap_or(usize::MAX)) {
+            Some(line) if line.body == body => ControlFlow::Continue(()),
+            Some(line) => {
+                failed = Some(SolveEnd::Differs(line.index));
+                ControlFlow::Break(())
+            }
+            None => {
+                match sender.blocking_send(SolveOutput::Line(Line { index: row.index, body, branch: None }, None)) {
+                    Ok(()) => ControlFlow::Continue(()),
+                    Err(_) => ControlFlow::Break(()),
+                }
+            }
+        }
+    });
+    match (failed, found) {
+        (Some(failed), _) => failed,
+        (None, Ok(found)) => found.summary.map_or(SolveEnd::Silent, SolveEnd::Curved),
+        (None, Err(_)) if cancel.is_cancelled() => SolveEnd::Cancelled,
+        (None, Err(errors)) => SolveEnd::NoCurve(errors),
     }
 }

@@ -4,6 +4,7 @@ use crate::check::judged::JudgedReport;
 use crate::model::InputErrors;
 use crate::resources::budget::Breach;
 use crate::service::store::{Checkpoint, Line};
+use crate::studies::critical_curves::CurveSummary;
 use crate::studies::error_against_time;
 
 /// How a solve ended.
@@ -20,6 +21,10 @@ pub enum SolveEnd {
     Unreadable(String),
     /// A study has ended, completed or cancelled.
     Studied(error_against_time::StudyReport),
+    /// A curve has ended, completed or cancelled.
+    Curved(CurveSummary),
+    /// There is no limit point to follow, or it cannot be followed.
+    NoCurve(InputErrors),
     /// Cancelled before there was a report.
     Cancelled,
     /// The solve would have exceeded a bound before there was a path with a report.
@@ -31,7 +36,7 @@ pub enum SolveEnd {
 /// A piece of output, in the order in which it is to be stored.
 #[derive(Debug)]
 pub enum SolveOutput {
-    /// An increment or a row of a study; with the load of a limit point, as JSON.
+    /// An increment, a row of a study or a point of a curve; with the load of a limit point, as JSON.
     Line(Line, Option<String>),
     Checkpoint(Checkpoint),
 }

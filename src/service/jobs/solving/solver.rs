@@ -3,9 +3,10 @@
 use crate::check::judged::{JudgedCheckpoint, JudgedCheckpointError, JudgedIncrement, JudgedPath, JudgedReport, Step};
 use crate::continuation::path::checkpoint::CheckpointError;
 use crate::continuation::scene::Scene;
-use crate::model::{InputError, InputErrors, JobRequest, StudyRequest};
+use crate::model::{Curve, InputError, InputErrors, JobRequest, StudyRequest};
 use crate::resources::cancel::CancelFlag;
 use crate::result::plan::Plan;
+use crate::studies::critical_curves::{self, CurveFound, CurveRow};
 use crate::studies::error_against_time::{self, StudyRun};
 use std::ops::ControlFlow;
 
@@ -92,6 +93,16 @@ pub trait Solver: Send + Sync + 'static {
         accept: &mut dyn FnMut(&StudyRun) -> ControlFlow<()>,
     ) -> Result<Option<error_against_time::StudyReport>, InputErrors> {
         error_against_time::run(request, done, cancel, accept)
+    }
+
+    /// Follows a curve of limit points, see `critical_curves::run`.
+    fn curve(
+        &self,
+        curve: &Curve,
+        cancel: &CancelFlag,
+        accept: &mut dyn FnMut(&CurveRow) -> ControlFlow<()>,
+    ) -> Result<CurveFound, InputErrors> {
+        critical_curves::run(curve, cancel, accept)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::service::jobs::workers::batch::{self, Drained};
 use crate::service::jobs::workers::{refinement, responses};
 use crate::service::metrics::Write;
 use crate::service::store::{Batch, Claim, Ending, Lease, LeaseAnswer, Status, StoreError, Task};
+use crate::studies::critical_curves::CurveSummary;
 use crate::studies::error_against_time;
 use std::time::Duration;
 use tokio_util::sync::CancellationToken;
@@ -23,6 +24,9 @@ const TO_HAND_BACK: Duration = Duration::from_secs(1);
 
 /// The stop reason of a solve that would exceed its memory limit, as for a path.
 const MEMORY_LIMIT: &str = "memory_limit";
+
+/// The stop reason of a curve whose limit point is not found, or cannot be followed.
+const NO_LIMIT_POINT: &str = "no_limit_point";
 
 /// Works until `shutdown`; a running job then returns to the queue.
 pub async fn work(jobs: Jobs, name: String, shutdown: CancellationToken) {
@@ -124,7 +128,9 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
     }
     let stored = match claim.task {
         Task::Path | Task::Sweep => Vec::new(),
-        Task::Study => batch::retry(jobs.settings.lease, shutdown, || jobs.lines(lease.job, None, usize::MAX)).await?,
+        Task::Study | Task::Curve => {
+            batch::retry(jobs.settings.lease, shutdown, || jobs.lines(lease.job, None, usize::MAX)).await?
+        }
     };
     let mut solve = match solve::start(jobs.solve_context(), claim, stored, cancel.clone()) {
         Ok(solve) => solve,
@@ -245,6 +251,16 @@ fn ending(end: SolveEnd) -> Ending {
         SolveEnd::Studied(report) => {
             studied(&report).unwrap_or_else(|error| Ending::failed(format!("the report cannot be written: {error}")))
         }
+        SolveEnd::Curved(summary) => {
+            curved(&summary).unwrap_or_else(|error| Ending::failed(format!("the report cannot be written: {error}")))
+        }
+        SolveEnd::NoCurve(errors) => Ending {
+            status: Status::Stopped,
+            stop_reason: Some(NO_LIMIT_POINT.to_owned()),
+            report: None,
+            error: Some(errors.to_string()),
+            responses: None,
+        },
         SolveEnd::Cancelled => cancelled(None),
         SolveEnd::Exceeded(breach) => Ending {
             status: Status::Stopped,
@@ -270,6 +286,13 @@ fn studied(report: &error_against_time::StudyReport) -> serde_json::Result<Endin
     let completed =
         Ending { status: Status::Completed, stop_reason: None, report: text.clone(), error: None, responses: None };
     Ok(if report.complete { completed } else { cancelled(text) })
+}
+
+fn curved(summary: &CurveSummary) -> serde_json::Result<Ending> {
+    let text = Some(serde_json::to_string(summary)?);
+    let completed =
+        Ending { status: Status::Completed, stop_reason: None, report: text.clone(), error: None, responses: None };
+    Ok(if summary.complete { completed } else { cancelled(text) })
 }
 
 fn cancelled(report: Option<String>) -> Ending {

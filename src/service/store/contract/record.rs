@@ -59,6 +59,8 @@ pub enum Task {
     Study,
     /// A group of jobs, its runs; its lines are the runs that have ended.
     Sweep,
+    /// A job that follows a limit point in a parameter; its lines are the points of the curve.
+    Curve,
 }
 
 impl Task {
@@ -67,11 +69,12 @@ impl Task {
             Self::Path => "path",
             Self::Study => "study",
             Self::Sweep => "sweep",
+            Self::Curve => "curve",
         }
     }
 
     pub fn from_name(name: &str) -> Option<Self> {
-        [Self::Path, Self::Study, Self::Sweep].into_iter().find(|task| task.name() == name)
+        [Self::Path, Self::Study, Self::Sweep, Self::Curve].into_iter().find(|task| task.name() == name)
     }
 }
 
@@ -285,7 +288,7 @@ impl JobRecord {
     pub fn lines_done(&self) -> u64 {
         match self.task {
             Task::Path => self.last_index.unwrap_or(0),
-            Task::Study | Task::Sweep => self.last_index.map_or(0, |index| index + 1),
+            Task::Study | Task::Sweep | Task::Curve => self.last_index.map_or(0, |index| index + 1),
         }
     }
 

@@ -20,6 +20,7 @@ const MIGRATIONS: &[MigrationFile] = migration_files![
     "0006_responses",
     "0007_changes",
     "0008_refinement",
+    "0009_curves",
 ];
 
 /// In the format of `server_version_num`.

@@ -26,7 +26,7 @@ pub(crate) enum Class {
 impl Class {
     pub fn of(task: Task) -> Self {
         match task {
-            Task::Path => Self::Single,
+            Task::Path | Task::Curve => Self::Single,
             Task::Study => Self::Study,
             Task::Sweep => Self::Many,
         }

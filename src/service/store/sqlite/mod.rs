@@ -41,6 +41,7 @@ const MIGRATIONS: &[MigrationFile] = migration_files![
     "0012_responses",
     "0013_changes",
     "0014_refinement",
+    "0015_curves",
 ];
 
 const READERS: u32 = 4;

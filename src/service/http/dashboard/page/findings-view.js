@@ -1,4 +1,4 @@
-// The view of a study or a sweep: its heading, a picture of its findings and their table, up to date while it runs.
+// The view of a study, a sweep or a curve: its heading, a picture of its findings and their table, up to date while it runs.
 
 import { get, isGivenUp } from "./api.js";
 import { atMostEvery, element, fill } from "./dom.js";
@@ -14,7 +14,7 @@ import { isGoingOn, nameOf, statusWords } from "./words.js";
  */
 export class FindingsView {
   /**
-   * `kind`: "study" or "sweep"; `place`: the address below which its records are; `title`: what the findings are; `pause`:
+   * `kind`: "study", "sweep" or "curve"; `place`: the address below which its records are; `title`: what the findings are; `pause`:
    * milliseconds between drawings while rows come in. Calls `told.changed()` when the lists have to be read again,
    * `told.shown(title)`, `told.connection()` and `told.failed(problem)`.
    */
@@ -37,7 +37,7 @@ export class FindingsView {
     this.isConnected = true;
   }
 
-  /** Shows the study or sweep of that id; null for none. */
+  /** Shows the study, sweep or curve of that id; null for none. */
   show(id) {
     if (this.id === id) return;
     this.close();

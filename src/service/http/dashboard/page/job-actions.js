@@ -1,4 +1,4 @@
-// The actions on a job, a study or a sweep: cancel, delete, download, run again.
+// The actions on a job, a study, a sweep or a curve: cancel, delete, download, run again.
 
 import { call } from "./api.js";
 import { askingButton, button, byId, element } from "./dom.js";
@@ -29,7 +29,7 @@ export function jobActions(job, done, failed) {
     }), { class: "danger", id: "delete" }));
 }
 
-/** The actions on a study or a sweep; `kind` is "study" or "sweep", `place` the address below which its records are. */
+/** The actions on a study, a sweep or a curve; `kind` is "study", "sweep" or "curve", `place` the address below which its records are. */
 export function findingsActions(record, kind, place, hasFindings, done, failed) {
   const { id } = record;
   const then = doing(done, failed);

@@ -2,6 +2,7 @@
 // between its parts.
 
 import { isGivenUp } from "./api.js";
+import { ContinueForm } from "./continue-form.js";
 import { Diagnostics } from "./diagnostics.js";
 import { Directions } from "./directions.js";
 import { atMostEvery, byId, frame, onceAFrame } from "./dom.js";
@@ -24,7 +25,7 @@ const FIRST_PATH = "first path";
 
 export class JobView {
   /** Tells `said(words, again)`: what stands in the place of a job, and how to try again; `titled(words)`; `changed()`;
-   *  `connection()`. */
+   *  `connection()`; `continued(curve)`. */
   constructor(told) {
     this.told = told;
     /** Id to path, for all loaded paths, drawn or not. */
@@ -46,13 +47,17 @@ export class JobView {
       chosen,
       followed: (job) => { told.changed(); change({ jobs: [...state().jobs, job.id] }); },
     });
+    this.continuing = new ContinueForm(byId("continuing"), told);
     this.diagnostics = new Diagnostics(byId("diagnostics"), { opened: (figures) => change({ figures }) }, state().figures);
     this.structureLater = atMostEvery(STRUCTURE, () => {
       if (state().at === null && this.first) return this.structure.choose(null);
       return null;
     });
     this.figuresLater = atMostEvery(FIGURES, () => {
-      if (state().at === null && this.first) this.directions.choose(this.first, null);
+      if (state().at === null && this.first) {
+        this.directions.choose(this.first, null);
+        this.continuing.choose(this.first, null);
+      }
       return this.diagnostics.draw();
     });
     this.grown = onceAFrame(() => {
@@ -115,7 +120,8 @@ export class JobView {
   }
 
   get isWanted() {
-    return state().jobs.length > 0 && !state().run && state().study === null && state().sweep === null;
+    return state().jobs.length > 0 && !state().run && state().study === null && state().sweep === null
+      && state().curve === null;
   }
 
   /** A placeholder while a path is being loaded. */
@@ -139,6 +145,7 @@ export class JobView {
     this.pathPlot.choose(at);
     this.structure.choose(at);
     this.directions.choose(first, at);
+    this.continuing.choose(first, at);
   }
 
   /** Moves along the path by a number of increments. */
@@ -228,6 +235,7 @@ export class JobView {
     await frame();
     this.layExact(first);
     this.directions.choose(first, state().at);
+    this.continuing.choose(first, state().at);
     this.diagnostics.show(first);
   }
 

@@ -1,6 +1,7 @@
-// Starts the page, and shows the form, study, sweep or jobs of the state.
+// Starts the page, and shows the form, study, sweep, curve or jobs of the state.
 
 import { callsList } from "./calls-list.js";
+import { CurveView } from "./curve-view.js";
 import { button, byId, element, fill } from "./dom.js";
 import { JobView } from "./job-view.js";
 import { listsDrawer } from "./lists-drawer.js";
@@ -8,7 +9,7 @@ import { onThemeChange } from "./plot-style.js";
 import { plotlyLoaded, warmPlotlyUp } from "./plotly-loaded.js";
 import { isReached, onReach } from "./reach.js";
 import { RunForm } from "./run-form.js";
-import { change, isSameView, onChange, openJob, openStudy, openSweep, state } from "./state.js";
+import { change, isSameView, onChange, openCurve, openJob, openStudy, openSweep, state } from "./state.js";
 import { StudyView } from "./study-view.js";
 import { SweepView } from "./sweep-view.js";
 import { TaskLists } from "./task-lists.js";
@@ -23,7 +24,7 @@ function say(words, again) {
 }
 
 function connection() {
-  const isLost = !isReached() || [jobView, studyView, sweepView].some((one) => !one.isConnected);
+  const isLost = !isReached() || [jobView, ...findings].some((one) => !one.isConnected);
   const place = byId("connection");
   place.textContent = isLost ? "Disconnected; trying again …" : "";
   place.classList.toggle("bad", isLost);
@@ -36,10 +37,14 @@ function titled(words) {
 tokenPrompt(byId("token"));
 const lists = new TaskLists(byId("lists"));
 const changed = () => lists.load();
-const jobView = new JobView({ said: say, titled, changed, connection });
+const jobView = new JobView({
+  said: say, titled, changed, connection, continued: (curve) => { changed(); openCurve(curve.id); },
+});
 const told = { failed: (problem) => say(problem.message), shown: (words) => { say(""); titled(words); }, changed, connection };
 const studyView = new StudyView(byId("study"), told);
 const sweepView = new SweepView(byId("sweep"), told);
+const curveView = new CurveView(byId("curve"), told);
+const findings = [studyView, sweepView, curveView];
 const runForm = new RunForm(byId("run"), {
   queued: (job) => { changed(); openJob(job.id); },
   queuedStudy: (study) => { changed(); openStudy(study.id); },
@@ -55,9 +60,10 @@ function view(before) {
     || before.again !== now.again) runForm.show();
   if (isOther) {
     titled(now.run ? "New run" : "");
-    say(now.run || now.jobs.length ? "" : now.study || now.sweep ? "Loading …" : "Choose a job, or start one with New run.");
+    say(now.run || now.jobs.length ? "" : now.study || now.sweep || now.curve ? "Loading …" : "Choose a job, or start one with New run.");
     studyView.show(now.run ? null : now.study);
     sweepView.show(now.run ? null : now.sweep);
+    curveView.show(now.run ? null : now.curve);
     jobView.view();
     connection();
   } else if (before.abscissa !== now.abscissa || before.ordinate !== now.ordinate) {
@@ -73,9 +79,9 @@ onReach((isBack) => {
   if (!isBack) return;
   lists.load();
   // Fetches what could not be fetched meanwhile.
-  for (const one of [runForm, studyView, sweepView, jobView]) one.recover();
+  for (const one of [runForm, ...findings, jobView]) one.recover();
 });
-onThemeChange(() => { jobView.repaint(); studyView.draw(); sweepView.draw(); });
+onThemeChange(() => { for (const one of findings) one.draw(); jobView.repaint(); });
 byId("skip").addEventListener("click", (event) => {
   event.preventDefault();
   byId("view").focus();
@@ -91,5 +97,5 @@ addEventListener("keydown", (event) => {
 });
 view(null);
 // If there is something to draw, it is drawn first.
-const ready = state().jobs.length || state().study || state().sweep ? plotlyLoaded : warmPlotlyUp;
+const ready = state().jobs.length || state().study || state().sweep || state().curve ? plotlyLoaded : warmPlotlyUp;
 ready().catch((problem) => say(problem.message));

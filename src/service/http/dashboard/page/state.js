@@ -1,18 +1,18 @@
 // The state that determines the view, which is also kept in the address, so that a link leads to the same view.
 //
-// jobs: ids drawn in the path plot; the first is the one whose structure and figures are shown. study, sweep: the id of one that
-// is shown in their place. abscissa and ordinate: a member of the increments or a JSON Pointer to one; null for the job's own
+// jobs: ids drawn in the path plot; the first is the one whose structure and figures are shown. study, sweep, curve: the id
+// of one that is shown in their place. abscissa and ordinate: a member of the increments or a JSON Pointer to one; null for the job's own
 // choice. at: the chosen increment, null for the last. turn: azimuth and elevation (degrees) from which a structure in space
 // is seen, null for the usual ones. exaggeration: of its displacements. figures: the diagnostics are open. status and search: what
 // the lists show. run: the form for a new run is open; scene: what is in it; as: "study" or "sweep" where it queues one; again: how
 // often the model of a job has been asked for, which is not in the address.
 
 const EMPTY = {
-  jobs: [], study: null, sweep: null, abscissa: null, ordinate: null, at: null, turn: null, exaggeration: 1, figures: false,
-  status: "", search: "", run: false, scene: "",
+  jobs: [], study: null, sweep: null, curve: null, abscissa: null, ordinate: null, at: null, turn: null, exaggeration: 1,
+  figures: false, status: "", search: "", run: false, scene: "",
   as: "", again: 0,
 };
-/** What jobs, studies and sweeps can be filtered by. */
+/** What jobs, studies, sweeps and curves can be filtered by. */
 export const STATUSES = ["queued", "running", "completed", "stopped", "cancelled", "failed"];
 /** Prefix in place of the name of a scene: the model of a job. */
 const OF_A_JOB = "job:";
@@ -29,6 +29,7 @@ function ofAddress() {
     jobs: [...new Set((given.get("jobs") ?? "").toLowerCase().split(",").filter((id) => ID.test(id)))],
     study: idOf("study"),
     sweep: idOf("sweep"),
+    curve: idOf("curve"),
     abscissa: given.get("abscissa"),
     ordinate: given.get("ordinate"),
     at: Number.isSafeInteger(at) && at >= 0 ? at : null,
@@ -57,6 +58,7 @@ function address(state) {
   const parts = [];
   if (state.study) parts.push(`study=${state.study}`);
   if (state.sweep) parts.push(`sweep=${state.sweep}`);
+  if (state.curve) parts.push(`curve=${state.curve}`);
   if (state.jobs.length) parts.push(`jobs=${state.jobs.join(",")}`);
   if (state.abscissa) parts.push(`abscissa=${encodeURIComponent(state.abscissa)}`);
   if (state.ordinate) parts.push(`ordinate=${encodeURIComponent(state.ordinate)}`);
@@ -90,7 +92,8 @@ function write() {
 
 export const state = () => now;
 /** Whether both states show the same view, apart from form, filter and chosen point. */
-export const isSameView = (a, b) => a.jobs.join() === b.jobs.join() && a.run === b.run && a.study === b.study && a.sweep === b.sweep;
+export const isSameView = (a, b) => a.jobs.join() === b.jobs.join() && a.run === b.run && a.study === b.study
+  && a.sweep === b.sweep && a.curve === b.curve;
 
 /** Changes the state; listeners get the previous one. Another job or form makes a history entry, an increment does not. */
 export function change(changes) {
@@ -106,19 +109,26 @@ export function change(changes) {
   for (const listener of listeners) listener(before);
 }
 
+/** The changes that leave nothing shown. */
+const NOTHING = { jobs: [], study: null, sweep: null, curve: null, at: null, abscissa: null, ordinate: null, run: false };
+
 /** Shows these jobs and nothing else. */
 export function openJobs(jobs) {
-  change({ jobs, study: null, sweep: null, at: null, abscissa: null, ordinate: null, run: false });
+  change({ ...NOTHING, jobs });
 }
 
 export const openJob = (id) => openJobs([id]);
 
 export function openStudy(id) {
-  change({ jobs: [], study: id, sweep: null, at: null, abscissa: null, ordinate: null, run: false });
+  change({ ...NOTHING, study: id });
 }
 
 export function openSweep(id) {
-  change({ jobs: [], study: null, sweep: id, at: null, abscissa: null, ordinate: null, run: false });
+  change({ ...NOTHING, sweep: id });
+}
+
+export function openCurve(id) {
+  change({ ...NOTHING, curve: id });
 }
 
 /** The job whose model is requested in place of a scene; null for a scene. */
@@ -132,6 +142,7 @@ export function openModelOf(id) {
 export const addressOfJob = (...ids) => `/?jobs=${ids.join(",")}`;
 export const addressOfStudy = (id) => `/?study=${id}`;
 export const addressOfSweep = (id) => `/?sweep=${id}`;
+export const addressOfCurve = (id) => `/?curve=${id}`;
 
 export function onChange(listener) {
   listeners.add(listener);

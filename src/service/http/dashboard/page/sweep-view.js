@@ -1,8 +1,8 @@
 // A sweep: the first limit load against what is varied, with a line for each set of the other values, and its runs, whose
 // paths can be drawn over one another.
 
-import { get } from "./api.js";
 import { button, element, fill, table } from "./dom.js";
+import { allRows } from "./findings-rows.js";
 import { FindingsView } from "./findings-view.js";
 import { axis, colourOf } from "./plot-style.js";
 import { addressOfJob, openJobs } from "./state.js";
@@ -25,14 +25,7 @@ export class SweepView extends FindingsView {
   async load(place, signal) {
     this.rows = [];
     await super.load(place, signal);
-    let after = null;
-    for (;;) {
-      const page = await get(`${place}/rows${after === null ? "" : `?after=${after}`}`, signal);
-      if (signal.aborted) return null;
-      this.rows.push(...page.rows);
-      after = page.next_after;
-      if (page.rows.length === 0) return after;
-    }
+    return allRows(place, signal, (rows) => this.rows.push(...rows));
   }
 
   come(rows) {

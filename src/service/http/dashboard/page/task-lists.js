@@ -1,9 +1,9 @@
-// The lists of jobs, of studies and of sweeps beside the view: search, filter, which paths are drawn together.
+// The lists of jobs, of studies, of sweeps and of curves beside the view: search, filter, which paths are drawn together.
 
 import { choice, element, fill } from "./dom.js";
 import { change, isSameView, state, STATUSES } from "./state.js";
 import { TaskList } from "./task-list.js";
-import { jobRows, studyRow, sweepRow } from "./task-rows.js";
+import { curveRow, jobRows, studyRow, sweepRow } from "./task-rows.js";
 
 export class TaskLists {
   constructor(place) {
@@ -22,7 +22,11 @@ export class TaskLists {
       // The runs in the list of jobs are named by the values of their sweep.
       come: () => this.jobs.draw(),
     });
-    this.lists = [this.jobs, this.studies, this.sweeps];
+    this.curves = new TaskList({
+      title: "Curves", of: "curves", rows: (curves) => curves.map(curveRow),
+      empty: (status) => (status ? `No curve is ${status}.` : "None yet: they start at a limit point of a path."),
+    });
+    this.lists = [this.jobs, this.studies, this.sweeps, this.curves];
     this.filter = element("label", {}, "Show ");
     this.search = element("input", {
       type: "search", id: "search", placeholder: "Search name, id, status", value: state().search, autocomplete: "off",
@@ -30,7 +34,8 @@ export class TaskLists {
     });
     fill(place, element("div", { class: "bar" }, element("h2", {}, "Jobs"), this.filter), this.search, this.jobs.place,
       element("h2", { class: "second" }, "Studies"), this.studies.place,
-      element("h2", { class: "second" }, "Sweeps"), this.sweeps.place);
+      element("h2", { class: "second" }, "Sweeps"), this.sweeps.place,
+      element("h2", { class: "second" }, "Curves"), this.curves.place);
     this.drawFilter();
     this.load();
   }

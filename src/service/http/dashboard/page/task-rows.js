@@ -1,10 +1,10 @@
-// The rows of the lists: a job, the runs of a sweep under one heading, a study, a sweep.
+// The rows of the lists: a job, the runs of a sweep under one heading, a study, a sweep, a curve.
 
 import { element } from "./dom.js";
 import {
-  addressOfJob, addressOfStudy, addressOfSweep, change, openJob, openStudy, openSweep, state,
+  addressOfCurve, addressOfJob, addressOfStudy, addressOfSweep, change, openCurve, openJob, openStudy, openSweep, state,
 } from "./state.js";
-import { runWords } from "./sweep-values.js";
+import { placeWords, runWords } from "./sweep-values.js";
 import { ago, isGoingOn, nameOf, statusOf } from "./words.js";
 
 /** Sweep id to whether the reader has opened or closed the list of its runs. */
@@ -32,16 +32,17 @@ function row(task, { isChosen, before, link, told, done, most, kind }) {
 
 /** A job; `words`: what it is called under the heading of its sweep. */
 function jobRow(job, words = null) {
-  const { jobs: shown, study, sweep } = state();
-  const place = study || sweep ? -1 : shown.indexOf(job.id);
+  const { jobs: shown, study, sweep, curve } = state();
+  const isOther = study || sweep || curve;
+  const place = isOther ? -1 : shown.indexOf(job.id);
   const { increments, max_increments: most } = job.progress;
   const others = shown.filter((id) => id !== job.id);
   const draw = element("input", {
     type: "checkbox", checked: place >= 0, "data-key": `draw ${job.id}`, "aria-label": `draw ${words ?? nameOf(job)} with the others`,
     title: "draw with the others",
     onchange: (event) => change({
-      jobs: event.target.checked ? [...others, job.id] : others, run: false, study: null, sweep: null, ...(place === 0 ? { at: null } : {}),
-      ...(study || sweep ? { abscissa: null, ordinate: null } : {}),
+      jobs: event.target.checked ? [...others, job.id] : others, run: false, study: null, sweep: null, curve: null,
+      ...(place === 0 ? { at: null } : {}), ...(isOther ? { abscissa: null, ordinate: null } : {}),
     }),
   });
   const link = within(addressOfJob(job.id), () => openJob(job.id),
@@ -103,5 +104,16 @@ export function sweepRow(sweep) {
     { "data-key": `open ${sweep.id}`, "aria-current": isChosen ? "true" : null }, nameOf(sweep));
   return row(sweep, {
     isChosen, before: element("span", {}), link, told: `${ended} of ${of} runs, ${ago(sweep.created_at)}`, done: ended, most: of,
+  });
+}
+
+export function curveRow(curve) {
+  const isChosen = state().curve === curve.id;
+  const { points, of } = curve.progress;
+  const link = within(addressOfCurve(curve.id), () => openCurve(curve.id),
+    { "data-key": `open ${curve.id}`, "aria-current": isChosen ? "true" : null }, nameOf(curve));
+  return row(curve, {
+    isChosen, before: element("span", {}), link, told: `${points} points over ${placeWords(curve.plan.curve.parameter)}, ${ago(curve.created_at)}`,
+    done: points, most: of,
   });
 }

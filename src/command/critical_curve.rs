@@ -1,0 +1,91 @@
+//! `arcslip continue`: follows a limit point in a parameter of the model.
+
+use crate::command::options::{bounds, input};
+use crate::command::output::findings;
+use crate::command::output::outcome::{FAILED, Failure, Outcome};
+use crate::model::{Curve, decode};
+use crate::resources::cancel::CancelFlag;
+use crate::studies::critical_curves;
+use std::ops::ControlFlow;
+use std::process::ExitCode;
+
+/// Follow a limit point in a parameter of the model, such as its limit load over friction.
+///
+/// FILE is a job request with `"curve": {"parameter": POINTER, "range": [FROM, TO]}`, or one without where --parameter and
+/// --range are given.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    model: input::Model,
+    /// The number that varies, as a JSON pointer such as `/model/contacts/0/friction`, instead of that in the file.
+    #[arg(long, value_name = "POINTER")]
+    parameter: Option<String>,
+    /// The values between which it varies; the model's own is one of them.
+    #[arg(long, value_name = "FROM,TO", value_parser = range, allow_hyphen_values = true)]
+    range: Option<[f64; 2]>,
+    /// Longest step between two values. Default: the range over 40.
+    #[arg(long, value_name = "STEP")]
+    step: Option<f64>,
+    /// Follow the limit point of this number on the path, from 1.
+    #[arg(long, value_name = "N", conflicts_with = "increment")]
+    limit_point: Option<u64>,
+    /// Follow the limit point at the increment of this index.
+    #[arg(long, value_name = "INDEX")]
+    increment: Option<u64>,
+    #[command(flatten)]
+    written: findings::Written,
+    #[command(flatten)]
+    pub(super) bounds: bounds::Arguments,
+}
+
+fn range(argument: &str) -> Result<[f64; 2], String> {
+    let numbers: Result<Vec<f64>, _> = argument.split(',').map(str::parse).collect();
+    match numbers.map_err(|error| format!("`{argument}`: {error}"))?[..] {
+        [from, to] => Ok([from, to]),
+        _ => Err("FROM,TO is expected".to_owned()),
+    }
+}
+
+pub fn run(arguments: &Arguments) -> Outcome {
+    arguments.written.check()?;
+    let curve = Curve::read(&arguments.text()?).map_err(input::refused)?;
+    let progress = findings::counter("points");
+    let accept = &mut |_: &critical_curves::CurveRow| {
+        progress.inc(1);
+        ControlFlow::Continue(())
+    };
+    let found = critical_curves::run(&curve, &CancelFlag::default(), accept).map_err(input::refused)?;
+    progress.finish_and_clear();
+    arguments.written.write(&found)?;
+    Ok(if found.summary.is_some_and(|summary| summary.complete) { ExitCode::SUCCESS } else { ExitCode::from(FAILED) })
+}
+
+impl Arguments {
+    /// The document, with the values of the command line instead of its own.
+    fn text(&self) -> Result<Vec<u8>, Failure> {
+        let text = self.model.text()?;
+        let mut given = serde_json::Map::new();
+        let mut give = |name: &str, value: Option<serde_json::Value>| {
+            if let Some(value) = value {
+                given.insert(name.to_owned(), value);
+            }
+        };
+        give("parameter", self.parameter.clone().map(Into::into));
+        give("range", self.range.map(|range| serde_json::json!(range)));
+        give("step", self.step.map(Into::into));
+        give("limit_point", self.limit_point.map(Into::into));
+        give("increment", self.increment.map(Into::into));
+        if given.is_empty() {
+            return Ok(text);
+        }
+        let mut document = decode::object(&text).map_err(input::refused)?;
+        let curve = document.entry("curve").or_insert_with(|| serde_json::json!({}));
+        // A value other than an object is reported when the curve is read.
+        let Some(curve) = curve.as_object_mut() else { return Ok(text) };
+        if given.contains_key("increment") || given.contains_key("limit_point") {
+            curve.retain(|name, _| name != "increment" && name != "limit_point");
+        }
+        curve.extend(given);
+        serde_json::to_vec(&document).map_err(Failure::other)
+    }
+}

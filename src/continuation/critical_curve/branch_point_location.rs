@@ -1,0 +1,122 @@
+//! A point on the branch of one contact mode at which a quantity is zero: the load rate at a smooth limit point, the event
+//! function of a contact where it changes.
+
+use crate::continuation::critical_curve::contact_history::PointGuess;
+use crate::continuation::critical_curve::tolerances::{ACCEPTED_CORRECTION, LARGEST_CORRECTION, POINT_ROUND_OFF};
+use crate::mechanics::contact::Mode;
+use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::equations::closing_equation::HyperplaneEquation;
+use crate::mechanics::equations::corrected_point::Corrected;
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::state::{Rate, State};
+use crate::step::corrector::cost_counters::Work;
+use crate::step::corrector::{newton, tangent};
+use crate::step::event_functions::EventFunction;
+
+/// Iterations along the branch.
+const MOST_ITERATIONS: usize = 30;
+/// Arc length over which the slope of a quantity is measured that has no slope of its own.
+const DIFFERENCE: f64 = 1e-4;
+
+/// A point of a branch.
+#[derive(Debug, Clone)]
+pub(super) struct BranchPoint {
+    pub state: State,
+    /// The branch's direction there.
+    pub rate: Rate,
+    /// Modes with the directions of slip as they are there.
+    pub modes: Vec<Mode>,
+    pub residual: f64,
+}
+
+/// The branch of a mode, from the state in which the mode begins.
+pub(super) struct ModeBranch<'a> {
+    pub loading: Loading<'a>,
+    pub modes: &'a [Mode],
+    pub anchor: &'a State,
+    pub force_scale: f64,
+}
+
+impl ModeBranch<'_> {
+    /// The point of the branch at which a quantity is zero, near a guess.
+    ///
+    /// Points of the branch lie in hyperplanes across its direction; where the quantity is zero along it is found by
+    /// Newton's method, with the secant through the last two points where the quantity has no slope of its own.
+    pub fn locate(&self, event: EventFunction, guess: &PointGuess, work: &mut Work) -> Option<BranchPoint> {
+        let size = 1.0 + guess.state.distance(self.anchor);
+        let value = |point: &BranchPoint| event.value(self.loading, self.modes, &point.state, &point.rate);
+        let chord = guess.from.chord(&guess.state);
+        let plane = HyperplaneEquation { from: &guess.state, rate: &guess.rate, step: 0.0 };
+        let mut here = self.correct(&guess.state, plane, (&guess.from, &chord), work)?;
+        let mut at = value(&here);
+        let mut slope = match event.slope(self.loading, self.modes, &here.state, &here.rate) {
+            Some(slope) => slope,
+            None => {
+                let beside = self.advanced(&here, DIFFERENCE, work)?;
+                (value(&beside) - at) / DIFFERENCE
+            }
+        };
+        let (mut best, mut least) = (here.clone(), f64::INFINITY);
+        for _ in 0..MOST_ITERATIONS {
+            let step = (-at / slope).clamp(-LARGEST_CORRECTION * size, LARGEST_CORRECTION * size);
+            if !step.is_finite() {
+                return None;
+            }
+            if step.abs() <= POINT_ROUND_OFF * size {
+                return Some(here);
+            }
+            if step.abs() >= 0.5 * least && least <= ACCEPTED_CORRECTION * size {
+                // What remains is round-off.
+                return Some(best);
+            }
+            if step.abs() < least {
+                (least, best) = (step.abs(), here.clone());
+            }
+            let next = self.advanced(&here, step, work)?;
+            let found = value(&next);
+            slope = match event.slope(self.loading, self.modes, &next.state, &next.rate) {
+                Some(slope) => slope,
+                None if found == at => return (least <= ACCEPTED_CORRECTION * size).then_some(best),
+                None => (found - at) / step,
+            };
+            (here, at) = (next, found);
+        }
+        (least <= ACCEPTED_CORRECTION * size).then_some(best)
+    }
+
+    /// The direction of the branch at a state on it, closest to another direction.
+    pub fn direction(&self, state: &State, towards: &Rate, work: &mut Work) -> Option<Rate> {
+        let system = ModeSystem::new(self.loading, self.modes, self.anchor);
+        let corrected = newton::judged(&system, state.clone(), self.force_scale);
+        self.tangent(&system, &corrected, towards, work)
+    }
+
+    fn advanced(&self, from: &BranchPoint, step: f64, work: &mut Work) -> Option<BranchPoint> {
+        let plane = HyperplaneEquation { from: &from.state, rate: &from.rate, step };
+        self.correct(&from.state.advanced(&from.rate, step), plane, (&from.state, &from.rate), work)
+    }
+
+    /// The point of the branch in a plane, from a guess beside a converged point.
+    fn correct(
+        &self,
+        guess: &State,
+        plane: HyperplaneEquation<'_>,
+        (point, chord): (&State, &Rate),
+        work: &mut Work,
+    ) -> Option<BranchPoint> {
+        let system = ModeSystem::new(self.loading, self.modes, self.anchor).beside(point, chord);
+        let guess = system.iterate(guess.clone());
+        let corrected = newton::correct_from(&system, guess, &plane, self.force_scale, &mut None, work).ok()?;
+        let rate = self.tangent(&system, &corrected, plane.rate, work)?;
+        Some(BranchPoint { rate, residual: corrected.residual, modes: corrected.modes, state: corrected.state })
+    }
+
+    fn tangent(&self, system: &ModeSystem<'_>, corrected: &Corrected, towards: &Rate, work: &mut Work) -> Option<Rate> {
+        let made = &mut work.factorisations;
+        let mut rate = tangent::tangent_and_error(system, corrected, towards, &mut None, made)?.rate;
+        if rate.product(towards) < 0.0 {
+            rate.scale(-1.0);
+        }
+        Some(rate)
+    }
+}

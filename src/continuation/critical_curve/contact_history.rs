@@ -1,0 +1,184 @@
+//! The changes of contact by which a path comes to a critical point.
+//!
+//! Friction remembers: a contact sticks where it came to rest, and where that is depends on the parameter. But between two
+//! changes of contact the equations of one mode hold, and they know of the past only the place at which the mode began. The
+//! points at which contacts change therefore determine each other one after the other, and the critical point at last: each
+//! is the zero of its event function on the branch of its mode, from the point before. With another value of the parameter
+//! the same points are found again by Newton's method, without the path between them.
+
+use crate::continuation::path_state::passed_points::PassedPoint;
+use crate::continuation::scene::Scene;
+use crate::mechanics::contact::{Mode, Sliding, all_continue};
+use crate::mechanics::problem::state::{Rate, State};
+use crate::result::increment::PointKind;
+use crate::step::event_functions::{self, EventFunction};
+
+use crate::continuation::critical_curve::solved_history::scene_loading;
+use crate::continuation::critical_curve::tolerances::ZERO_AT_POINT;
+
+/// Why a critical point cannot be followed in a parameter.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum HistoryRefusal {
+    /// Contacts changed together.
+    #[error("contacts change together within an increment before the point, although all changes were to be resolved")]
+    Joined,
+    /// Several contacts slip in a plane.
+    #[error(
+        "{0} slips against friction in a plane, where the direction of slip turns along the path: such a path is no \
+         sequence of points; sweep the parameter instead"
+    )]
+    TurningSlip(String),
+    /// Rotations in space.
+    #[error(
+        "nodes turn in space, where a path depends on the references of its rotations; sweep the parameter instead"
+    )]
+    TurningNodes,
+    /// Friction between bodies.
+    #[error(
+        "{0} touches another body with friction, where the slip is summed up along the path; sweep the parameter instead"
+    )]
+    SlidingBodies(String),
+    /// A count of increments.
+    #[error("stage \"{0}\" ends after a number of increments, which is no state of the structure; give it another end")]
+    CountedEnd(String),
+}
+
+/// A point of the history.
+#[derive(Debug, Clone)]
+pub(super) struct HistoryPoint {
+    pub stage: usize,
+    /// Modes in which the path arrives and leaves.
+    pub modes: Vec<Mode>,
+    pub leaving_modes: Vec<Mode>,
+    /// Whether contacts change here.
+    pub changes: bool,
+    pub closing: Closing,
+    /// Signs of the load rate with which the path arrives and leaves; 0 where it is zero, or the path does not change.
+    pub load_signs: [f64; 2],
+    /// Event functions of the mode after the point that are zero at it.
+    pub touching: Vec<EventFunction>,
+}
+
+/// What is zero at a point of the history.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Closing {
+    Event(EventFunction),
+    /// A bound of the stage, by its place among them.
+    StageEnd(usize),
+}
+
+/// The state of a point and the directions of the path there, where Newton's method starts.
+#[derive(Debug, Clone)]
+pub(super) struct PointGuess {
+    pub state: State,
+    /// The converged point from which the state was extrapolated; the state itself where there is none.
+    pub from: State,
+    pub rate: Rate,
+    pub leaving_rate: Option<Rate>,
+}
+
+/// The points by which a path comes to a critical point, the last of them.
+#[derive(Debug, Clone)]
+pub(super) struct ContactHistory {
+    pub points: Vec<HistoryPoint>,
+    pub kind: PointKind,
+    pub force_scale: f64,
+}
+
+impl ContactHistory {
+    /// The history of the last of these points of a path, and where its points are.
+    ///
+    /// # Errors
+    /// See [`HistoryRefusal`].
+    pub fn of(scene: &Scene, passed: &[PassedPoint]) -> Result<(Self, Vec<PointGuess>), HistoryRefusal> {
+        refuse_scene(scene)?;
+        let (mut points, mut guesses) = (Vec::new(), Vec::new());
+        let last = passed.len().saturating_sub(1);
+        let mut reached: Vec<f64> = Vec::new();
+        let mut load = 0.0;
+        for (place, point) in passed.iter().enumerate() {
+            refuse_modes(scene, &point.modes)?;
+            while reached.len() < point.stage {
+                reached.push(std::mem::take(&mut load));
+            }
+            load = point.state.load;
+            let changes = !all_continue(&point.leaving_modes, &point.modes);
+            // A limit point or bifurcation point on the way leaves no trace.
+            if place < last && !changes && !point.stage_ends {
+                continue;
+            }
+            let closing = closing(scene, point)?;
+            let touching = if changes { touching(scene, point, &reached) } else { Vec::new() };
+            points.push(HistoryPoint {
+                stage: point.stage,
+                modes: point.modes.clone(),
+                leaving_modes: point.leaving_modes.clone(),
+                changes,
+                closing,
+                load_signs: [sign(Some(&point.rate)), sign(point.leaving_rate.as_ref().filter(|_| changes))],
+                touching,
+            });
+            guesses.push(PointGuess {
+                state: point.state.clone(),
+                from: point.state.clone(),
+                rate: point.rate.clone(),
+                leaving_rate: point.leaving_rate.clone().filter(|_| changes),
+            });
+        }
+        let critical = &passed[last];
+        // Where a stage ends at its limit point, the point says so by its event.
+        let is_smooth = matches!(critical.event, Some(EventFunction::LoadRate { .. }));
+        let kind = if is_smooth { PointKind::SmoothLimit } else { critical.kind };
+        Ok((Self { points, kind, force_scale: critical.force_scale }, guesses))
+    }
+}
+
+/// Load rates below this have no sign.
+const NO_LOAD_RATE: f64 = 1e-9;
+
+fn sign(rate: Option<&Rate>) -> f64 {
+    let load = rate.map_or(0.0, |rate| rate.load);
+    if load.abs() <= NO_LOAD_RATE { 0.0 } else { load.signum() }
+}
+
+/// The event functions of the mode after a point that are zero there.
+fn touching(scene: &Scene, point: &PassedPoint, reached: &[f64]) -> Vec<EventFunction> {
+    let Some(rate) = &point.leaving_rate else { return Vec::new() };
+    let held = crate::continuation::path_state::resumable_state::constant_load(scene, reached);
+    let loading = scene_loading(scene, point.stage, &held);
+    let of_mode = event_functions::of_mode(loading, &point.leaving_modes, &point.state, rate);
+    let is_zero = |function: &EventFunction| {
+        let value = function.value(loading, &point.leaving_modes, &point.state, rate);
+        value.abs() <= ZERO_AT_POINT * function.scale(loading, &point.state, point.force_scale)
+    };
+    of_mode.into_iter().filter(is_zero).collect()
+}
+
+fn closing(scene: &Scene, point: &PassedPoint) -> Result<Closing, HistoryRefusal> {
+    let stage = &scene.stages[point.stage];
+    match point.event {
+        Some(EventFunction::End(end)) => {
+            let place = stage.ends.iter().position(|other| *other == end);
+            place.map(Closing::StageEnd).ok_or_else(|| HistoryRefusal::CountedEnd(stage.name.to_string()))
+        }
+        Some(event) => Ok(Closing::Event(event)),
+        None if point.stage_ends => Err(HistoryRefusal::CountedEnd(stage.name.to_string())),
+        None => Err(HistoryRefusal::Joined),
+    }
+}
+
+fn refuse_scene(scene: &Scene) -> Result<(), HistoryRefusal> {
+    if scene.structure.turning.are_there() {
+        return Err(HistoryRefusal::TurningNodes);
+    }
+    let bodies = scene.contacts.iter().position(|one| one.tangents() > 0 && one.kinematics.node().is_none());
+    bodies.map_or(Ok(()), |contact| Err(HistoryRefusal::SlidingBodies(scene.contact_names[contact].0.to_string())))
+}
+
+fn refuse_modes(scene: &Scene, modes: &[Mode]) -> Result<(), HistoryRefusal> {
+    let turns = |(mode, contact): (&Mode, &crate::mechanics::contact::ContactPair)| {
+        matches!(mode, Mode::Slip { .. }) && contact.tangents() > 0 && contact.sliding == Sliding::Plane
+    };
+    let turning = modes.iter().zip(&scene.contacts).position(turns);
+    turning.map_or(Ok(()), |contact| Err(HistoryRefusal::TurningSlip(scene.contact_names[contact].0.to_string())))
+}

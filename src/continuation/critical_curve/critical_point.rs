@@ -1,0 +1,143 @@
+//! A point of a curve of critical points in the user's units and names.
+
+use crate::continuation::critical_curve::contact_history::ContactHistory;
+use crate::continuation::critical_curve::solved_history::{ConditionSide, PathCondition, SolvedHistory, scene_loading};
+use crate::continuation::path_state::resumable_state::constant_load;
+use crate::continuation::path_state::row_conversion::{self, RowSource};
+use crate::continuation::path_state::totals::Totals;
+use crate::continuation::scene::Scene;
+use crate::result::increment::{Increment, Point, PointKind};
+use crate::step::corrector::cost_counters::Work;
+use crate::step::event_functions::EventFunction;
+
+/// A point of a curve of critical points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurvePoint {
+    /// The value of the parameter.
+    pub value: f64,
+    /// Whether the curve's points change their kind here, or the path to them its changes of contact.
+    pub codimension_two: bool,
+    /// Whether the point was found on a path traced for it.
+    pub from_path: bool,
+    /// Load factors at which the stages before ended.
+    pub stage_ends: Vec<f64>,
+    /// The state: displacements, contacts, forces, load factor; `point.kind` is the kind of the critical point. It has no
+    /// energies, no arc length and no slip, which are of the path.
+    pub increment: Increment,
+}
+
+/// The data of a point besides its state.
+pub(super) struct PointNote {
+    pub event: Option<String>,
+    pub codimension_two: bool,
+    pub from_path: bool,
+}
+
+/// Converts the critical point of a solved history.
+pub(super) fn point(
+    scene: &Scene,
+    history: &ContactHistory,
+    solved: &SolvedHistory,
+    note: PointNote,
+    work: Work,
+) -> CurvePoint {
+    let held = constant_load(scene, &solved.reached);
+    let stage = history.points.last().map_or(0, |point| point.stage);
+    let loading = scene_loading(scene, stage, &held);
+    let places: Vec<Option<usize>> = (0..scene.contacts.len()).map(Some).collect();
+    let rows: Vec<usize> = (0..scene.reported.len()).collect();
+    let point = Point::plain(history.kind, note.event);
+    let state = solved.critical();
+    let mut totals = Totals::begun();
+    (totals.work, totals.force_scale) = (work, history.force_scale);
+    let row = RowSource {
+        stage,
+        stability: None,
+        loading,
+        whole: loading,
+        places: &places,
+        rows: &rows,
+        state,
+        before: state,
+        modes: &solved.modes,
+        step: 0.0,
+        point: &point,
+        options: &[],
+        taken: None,
+        residual: solved.residual,
+        error_estimate: 0.0,
+        elapsed_s: 0.0,
+        mode_named: None,
+    };
+    let ends = scene.stages.iter().zip(&solved.reached).map(|(stage, load)| stage.load_factor(*load));
+    CurvePoint {
+        value: solved.parameter,
+        codimension_two: note.codimension_two,
+        from_path: note.from_path,
+        stage_ends: ends.collect(),
+        increment: row_conversion::increment(scene, &totals, &row),
+    }
+}
+
+/// The kind of a limit point in words.
+pub(super) fn kind_name(kind: PointKind) -> &'static str {
+    match kind {
+        PointKind::NonsmoothLimit => "nonsmooth limit point",
+        _ => "smooth limit point",
+    }
+}
+
+/// What happens where a condition ends.
+pub(super) fn describe(scene: &Scene, history: &ContactHistory, condition: &PathCondition) -> String {
+    let (last, at) = (history.points.len() - 1, condition.point);
+    let what = what_happens(scene, condition, at == last);
+    if at == last {
+        return format!("{what} at the {}", kind_name(history.kind));
+    }
+    format!("{what} at change {} of the {last} by which the path comes to the {}", at + 1, kind_name(history.kind))
+}
+
+fn what_happens(scene: &Scene, condition: &PathCondition, is_critical: bool) -> String {
+    let pair = |contact: usize| {
+        let (node, obstacle) = &scene.contact_names[contact];
+        (node.to_string(), obstacle.to_string())
+    };
+    let of_corner = |corner: usize| {
+        let first = scene.corners.get(corner).and_then(|corner| corner.contacts.first());
+        first.map_or_else(String::new, |contact| pair(*contact).0)
+    };
+    match condition.function {
+        EventFunction::Gap(contact) => {
+            let (node, obstacle) = pair(contact);
+            format!("{node} touches {obstacle}")
+        }
+        EventFunction::Normal(contact) => {
+            let (node, obstacle) = pair(contact);
+            format!("{node} leaves {obstacle}")
+        }
+        EventFunction::Cone { contact, .. } => {
+            let (node, obstacle) = pair(contact);
+            format!("{node} begins to slip on {obstacle}")
+        }
+        EventFunction::Sliding(contact) => {
+            let (node, obstacle) = pair(contact);
+            format!("{node} stops slipping on {obstacle}")
+        }
+        EventFunction::SurfaceEnd(contact) => {
+            let (node, surface) = pair(contact);
+            format!("{node} comes to the end of {surface}")
+        }
+        EventFunction::Facet { corner, .. }
+        | EventFunction::Slide { corner }
+        | EventFunction::Hold { corner }
+        | EventFunction::Return { corner } => format!("{} begins to slip in its corner", of_corner(corner)),
+        EventFunction::LoadRate { .. } if !is_critical => {
+            "another limit point of the path comes or goes where the load turns".to_owned()
+        }
+        EventFunction::LoadRate { .. } if condition.about == ConditionSide::Leaving => {
+            "the load no longer turns".to_owned()
+        }
+        EventFunction::LoadRate { .. } => "the load turns before the contact changes".to_owned(),
+        EventFunction::End(_) => "the stage ends".to_owned(),
+    }
+}

@@ -1,0 +1,407 @@
+//! The curve of critical points, from one value of the parameter to the next.
+
+use crate::algebra::scalar_root::find_root;
+use crate::continuation::critical_curve::contact_history::{ContactHistory, PointGuess};
+use crate::continuation::critical_curve::critical_point::{self, CurvePoint, PointNote};
+use crate::continuation::critical_curve::solved_history::{PathCondition, SolvedHistory};
+use crate::continuation::critical_curve::tolerances::{
+    LARGEST_DEVIATION, PASSED, PAST_CHANGE, SAME_POINT, SHORTEST_CHORD, SHORTEST_STEP, STEP_GROWTH,
+};
+use crate::continuation::critical_curve::traced_history::{self, CurveRefusal, CurveStart};
+use crate::continuation::scene::Scene;
+use crate::model::InputErrors;
+use crate::resources::cancel::CancelFlag;
+use crate::step::corrector::cost_counters::Work;
+use std::ops::ControlFlow;
+
+/// Paths that are traced past a change are at most this many times as long as the first one, in increments ...
+const MOST_PATH_FACTOR: u64 = 8;
+/// ... and at least this long.
+const LEAST_PATH: u64 = 200;
+/// Critical points of such a path that are tried.
+const MOST_CANDIDATES: usize = 4;
+
+/// The values of the parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurveRange {
+    /// Least value.
+    pub from: f64,
+    /// Largest value.
+    pub to: f64,
+    /// The value in the model, at which the curve starts; between the others.
+    pub start: f64,
+    /// Longest step between two values.
+    pub step: f64,
+}
+
+/// How a curve ended in one direction of the parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub enum DirectionEnd {
+    /// At the end of the range.
+    Range,
+    /// The critical point is lost past this value: the path traced there has none that continues the curve.
+    Lost {
+        /// The last value at which it is.
+        value: f64,
+        /// What happens there, in words.
+        why: String,
+    },
+    /// The model is refused from this value on.
+    Model {
+        /// The value.
+        value: f64,
+        /// The mistakes.
+        errors: InputErrors,
+    },
+}
+
+/// How a curve ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CurveEnd {
+    /// In both directions.
+    Complete {
+        /// Towards smaller values.
+        below: DirectionEnd,
+        /// Towards larger values.
+        above: DirectionEnd,
+    },
+    /// By the flag, or by the receiver of the points.
+    Cancelled,
+}
+
+/// A curve's end and its work.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurveReport {
+    /// How it ended.
+    pub end: CurveEnd,
+    /// Points of the curve.
+    pub points: u64,
+    /// Paths traced for it, the first one included.
+    pub paths: u64,
+    /// Newton iterations, without those of the paths.
+    pub newton_iterations: u64,
+}
+
+/// A scene for each value of a parameter.
+pub type SceneFamily<'a> = &'a dyn Fn(f64) -> Result<Scene, InputErrors>;
+
+/// Receives the points of a curve in the order in which they are found; breaks to end it.
+pub type AcceptPoint<'a> = &'a mut dyn FnMut(CurvePoint) -> ControlFlow<()>;
+
+/// A curve of critical points.
+pub struct CriticalCurve<'a> {
+    family: SceneFamily<'a>,
+    range: CurveRange,
+    cancel: CancelFlag,
+    work: Work,
+    points: u64,
+    paths: u64,
+    /// Most increments of a path that is traced past a change.
+    longest_path: u64,
+}
+
+/// Why a direction, or the curve, goes no further.
+enum Stopped {
+    Cancelled,
+    Ended(DirectionEnd),
+}
+
+/// The curve at its last point.
+#[derive(Clone)]
+struct Place {
+    history: ContactHistory,
+    here: SolvedHistory,
+    before: Option<SolvedHistory>,
+}
+
+impl<'a> CriticalCurve<'a> {
+    /// A curve that has not begun.
+    pub fn new(family: SceneFamily<'a>, range: CurveRange, cancel: CancelFlag) -> Self {
+        Self { family, range, cancel, work: Work::default(), points: 0, paths: 0, longest_path: LEAST_PATH }
+    }
+
+    /// Follows the curve from a critical point of the path to larger, then to smaller values.
+    ///
+    /// # Errors
+    /// There is no such point, or it cannot be followed; mistakes of the model at the first value.
+    pub fn follow(mut self, start: CurveStart, accept: AcceptPoint<'_>) -> Result<CurveReport, CurveFailure> {
+        let scene = (self.family)(self.range.start).map_err(CurveFailure::Model)?;
+        self.paths += 1;
+        let (history, guesses) = traced_history::start(&scene, start, &self.cancel)?;
+        let solved = history.solve(&scene, self.range.start, &guesses, &mut self.work);
+        let here = solved.ok_or(CurveRefusal::NotSolved)?;
+        let begin = Place { history, here, before: None };
+        let mut ends = Vec::new();
+        let note = PointNote { event: None, codimension_two: false, from_path: true };
+        let mut end = self.emit(&scene, &begin, note, accept).err();
+        if end.is_none() {
+            for target in [self.range.to, self.range.from] {
+                match self.towards(begin.clone(), target, accept) {
+                    Stopped::Ended(direction) => ends.push(direction),
+                    Stopped::Cancelled => {
+                        end = Some(Stopped::Cancelled);
+                        break;
+                    }
+                }
+            }
+        }
+        let end = match (end, ends.pop(), ends.pop()) {
+            (None, Some(below), Some(above)) => CurveEnd::Complete { below, above },
+            _ => CurveEnd::Cancelled,
+        };
+        let (points, paths, newton_iterations) = (self.points, self.paths, self.work.newton_iterations);
+        Ok(CurveReport { end, points, paths, newton_iterations })
+    }
+
+    /// Follows the curve to a value of the parameter.
+    fn towards(&mut self, mut place: Place, target: f64, accept: AcceptPoint<'_>) -> Stopped {
+        let sense = if target < place.here.parameter { -1.0 } else { 1.0 };
+        let mut step = self.range.step;
+        while place.here.parameter != target {
+            match self.step(&mut place, sense, &mut step, target, accept) {
+                ControlFlow::Continue(()) => {}
+                ControlFlow::Break(stopped) => return stopped,
+            }
+        }
+        Stopped::Ended(DirectionEnd::Range)
+    }
+
+    /// One step of the parameter; a shorter one is tried next where it fails.
+    fn step(
+        &mut self,
+        place: &mut Place,
+        sense: f64,
+        step: &mut f64,
+        target: f64,
+        accept: AcceptPoint<'_>,
+    ) -> ControlFlow<Stopped> {
+        if self.cancel.is_cancelled() {
+            return ControlFlow::Break(Stopped::Cancelled);
+        }
+        let value = self.next_value(place.here.parameter, sense, *step, target);
+        let scene = match (self.family)(value) {
+            Ok(scene) => scene,
+            Err(errors) if *step <= self.shortest() => {
+                return ControlFlow::Break(Stopped::Ended(DirectionEnd::Model { value, errors }));
+            }
+            Err(_) => {
+                *step *= 0.5;
+                return ControlFlow::Continue(());
+            }
+        };
+        let Some(solved) = self.near(place, &scene, value) else {
+            if *step > self.shortest() {
+                *step *= 0.5;
+                return ControlFlow::Continue(());
+            }
+            let from = place.here.clone();
+            let lost = || "its equations have no solution near by past this value".to_owned();
+            return self.go_on_past(place, &from, sense, target, accept, lost);
+        };
+        let broken = solved.broken();
+        if broken.is_empty() {
+            self.send(&scene, place, solved, false, accept)?;
+            *step = (*step * STEP_GROWTH).min(self.range.step);
+            return ControlFlow::Continue(());
+        }
+        let Some((scene, change, condition)) = self.change_before(place, value, &solved, &broken) else {
+            if *step <= self.shortest() {
+                let why = "a condition of the path ends there, and the place is not found".to_owned();
+                let value = place.here.parameter;
+                return ControlFlow::Break(Stopped::Ended(DirectionEnd::Lost { value, why }));
+            }
+            *step *= 0.5;
+            return ControlFlow::Continue(());
+        };
+        let what = critical_point::describe(&scene, &place.history, &condition);
+        let note = PointNote { event: Some(what.clone()), codimension_two: true, from_path: false };
+        let (here, history) = (change.clone(), place.history.clone());
+        flow(self.emit(&scene, &Place { history, here, before: None }, note, accept))?;
+        *step = self.range.step;
+        if change.parameter == target {
+            return ControlFlow::Break(Stopped::Ended(DirectionEnd::Range));
+        }
+        self.go_on_past(place, &change, sense, target, accept, || what)
+    }
+
+    /// The critical point at a value, found from the last ones of the curve; `None` where it is not the same one.
+    fn near(&mut self, place: &Place, scene: &Scene, value: f64) -> Option<SolvedHistory> {
+        let guesses = extrapolated(place, scene, value);
+        let solved = place.history.solve(scene, value, &guesses, &mut self.work)?;
+        let stage = place.history.points.last()?.stage;
+        let critical = guesses.last()?;
+        let before = place.here.scales.express(place.here.critical(), stage, scene);
+        let chord = before.distance(solved.critical()).max(SHORTEST_CHORD);
+        let off = critical.state.distance(solved.critical());
+        // Before the second point there is no direction of the curve.
+        let most = if place.before.is_some() { LARGEST_DEVIATION * chord } else { 0.1 * (1.0 + chord) };
+        (off <= most).then_some(solved)
+    }
+
+    /// The first value at which one of these conditions ends, between the last point and a value past it.
+    fn change_before(
+        &mut self,
+        place: &Place,
+        value: f64,
+        past: &SolvedHistory,
+        broken: &[PathCondition],
+    ) -> Option<(Scene, SolvedHistory, PathCondition)> {
+        let (_, at_value) = past.least_of(broken)?;
+        let (_, at_here) = place.here.least_of(broken)?;
+        let mut solved_at = |parameter: f64| {
+            let scene = (self.family)(parameter).ok()?;
+            let solved = self.near(place, &scene, parameter)?;
+            Some((scene, solved))
+        };
+        let root = if at_here <= 0.0 {
+            place.here.parameter
+        } else {
+            let least = |parameter: f64| Some(solved_at(parameter)?.1.least_of(broken)?.1);
+            find_root(least, (place.here.parameter, at_here), (value, at_value), 0.1 * PASSED * PASSED)?
+        };
+        let (scene, solved) = solved_at(root)?;
+        let (condition, _) = solved.least_of(broken)?;
+        Some((scene, solved, condition))
+    }
+
+    /// Goes on past a change, by a path traced there: its critical point must come from the same state.
+    fn go_on_past(
+        &mut self,
+        place: &mut Place,
+        change: &SolvedHistory,
+        sense: f64,
+        target: f64,
+        accept: AcceptPoint<'_>,
+        why: impl FnOnce() -> String,
+    ) -> ControlFlow<Stopped> {
+        let lost = |value: f64, why: String| ControlFlow::Break(Stopped::Ended(DirectionEnd::Lost { value, why }));
+        let value = stepped(change.parameter, sense * PAST_CHANGE * self.range.step, target);
+        let (Ok(scene), Ok(scene_at_change)) = ((self.family)(value), (self.family)(change.parameter)) else {
+            return lost(change.parameter, why());
+        };
+        let stage = place.history.points.last().map_or(0, |point| point.stage);
+        let expected = change.scales.express(change.critical(), stage, &scene);
+        self.paths += 1;
+        let candidates = traced_history::near(&scene, &expected, stage, self.longest_path, &self.cancel);
+        if self.cancel.is_cancelled() {
+            return ControlFlow::Break(Stopped::Cancelled);
+        }
+        self.longest_path = self.longest_path.max(
+            candidates
+                .iter()
+                .take(1)
+                .filter_map(|points| points.last())
+                .map(|point| MOST_PATH_FACTOR * point.index)
+                .fold(0, u64::max),
+        );
+        for passed in candidates.iter().take(MOST_CANDIDATES) {
+            let Ok((history, guesses)) = ContactHistory::of(&scene, passed) else { continue };
+            let Some(here) = history.solve(&scene, value, &guesses, &mut self.work) else { continue };
+            if !here.broken().is_empty() {
+                continue;
+            }
+            let begin = Place { history, here, before: None };
+            let Some(back) = self.back_to(&begin, &scene_at_change, change.parameter) else { continue };
+            let at_change = back.scales.express(back.critical(), stage, &scene_at_change);
+            let expected = change.scales.express(change.critical(), stage, &scene_at_change);
+            if at_change.distance(&expected) > SAME_POINT * (1.0 + chord_size(&expected)) {
+                continue;
+            }
+            *place = Place { before: Some(back), ..begin };
+            let note = PointNote { event: None, codimension_two: false, from_path: true };
+            return flow(self.emit(&scene, place, note, accept));
+        }
+        lost(change.parameter, why())
+    }
+
+    /// The critical point of a history at the change that it comes from, by a few steps.
+    fn back_to(&mut self, begin: &Place, scene: &Scene, value: f64) -> Option<SolvedHistory> {
+        let mut place = begin.clone();
+        for part in [0.5, 0.75, 0.9375] {
+            let parameter = begin.here.parameter + part * (value - begin.here.parameter);
+            let scene = (self.family)(parameter).ok()?;
+            let next = self.near(&place, &scene, parameter)?;
+            place.before = Some(std::mem::replace(&mut place.here, next));
+        }
+        self.near(&place, scene, value)
+    }
+
+    /// Makes a point the last one of the curve.
+    fn send(
+        &mut self,
+        scene: &Scene,
+        place: &mut Place,
+        solved: SolvedHistory,
+        from_path: bool,
+        accept: AcceptPoint<'_>,
+    ) -> ControlFlow<Stopped> {
+        place.before = Some(std::mem::replace(&mut place.here, solved));
+        flow(self.emit(scene, place, PointNote { event: None, codimension_two: false, from_path }, accept))
+    }
+
+    fn emit(&mut self, scene: &Scene, place: &Place, note: PointNote, accept: AcceptPoint<'_>) -> Result<(), Stopped> {
+        let mut point = critical_point::point(scene, &place.history, &place.here, note, self.work);
+        point.increment.index = self.points;
+        self.points += 1;
+        if accept(point).is_break() { Err(Stopped::Cancelled) } else { Ok(()) }
+    }
+
+    /// The value after a step at most this long: where it can be, a whole number of longest steps from the first value.
+    fn next_value(&self, from: f64, sense: f64, step: f64, target: f64) -> f64 {
+        let CurveRange { start, step: longest, .. } = self.range;
+        let count = sense * (from - start) / longest;
+        let ahead = start + sense * (count + 1e-9).floor() * longest + sense * longest;
+        let value = if (ahead - from).abs() <= step * (1.0 + 1e-9) { ahead } else { from + sense * step };
+        if sense * (target - value) <= 1e-9 * longest { target } else { value }
+    }
+
+    fn shortest(&self) -> f64 {
+        SHORTEST_STEP * (self.range.to - self.range.from)
+    }
+}
+
+fn flow(sent: Result<(), Stopped>) -> ControlFlow<Stopped> {
+    sent.map_or_else(ControlFlow::Break, ControlFlow::Continue)
+}
+
+/// The value after a step, at most the target; a remainder that is round-off is not left.
+fn stepped(from: f64, step: f64, target: f64) -> f64 {
+    if (target - from).abs() <= step.abs() * (1.0 + 1e-9) { target } else { from + step }
+}
+
+fn chord_size(state: &crate::mechanics::problem::state::State) -> f64 {
+    state.displacement.iter().map(|value| value * value).sum::<f64>().sqrt().hypot(state.load)
+}
+
+/// Guesses at a value by the line through the last two points of the curve.
+fn extrapolated(place: &Place, scene: &Scene, value: f64) -> Vec<PointGuess> {
+    let Place { history, here, before } = place;
+    let ratio = before.as_ref().map_or(0.0, |before| {
+        let width = here.parameter - before.parameter;
+        if width == 0.0 { 0.0 } else { (value - here.parameter) / width }
+    });
+    let guess = |(index, point): (usize, &PointGuess)| {
+        let stage = history.points[index].stage;
+        let last = here.scales.express(&point.state, stage, scene);
+        let state = match before {
+            Some(before) => {
+                let first = before.scales.express(&before.points[index].state, stage, scene);
+                last.advanced(&first.chord(&last), ratio)
+            }
+            None => last.clone(),
+        };
+        PointGuess { state, from: last, ..point.clone() }
+    };
+    here.points.iter().enumerate().map(guess).collect()
+}
+
+/// Why a curve was not followed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CurveFailure {
+    /// Mistakes of the model at the first value.
+    #[error("the model is refused: {0}")]
+    Model(InputErrors),
+    /// There is no critical point to follow.
+    #[error(transparent)]
+    Refused(#[from] CurveRefusal),
+}

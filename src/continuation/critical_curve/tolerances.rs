@@ -1,0 +1,45 @@
+//! Tolerances of curves of critical points.
+
+/// A quantity that must not be negative counts as negative below this, relative to its scale. Points of the history are
+/// located to some 1e-13; a quantity that is zero by symmetry, or that a change of contact keeps at zero, must not count as
+/// passed, and a curve that runs this far past a change of its kind is off by no more.
+pub(crate) const PASSED: f64 = 1e-9;
+
+/// Quantities up to this, relative to their scale, are zero at a point of the traced path: those of the contacts that change
+/// there, and of others that change with them.
+pub(crate) const ZERO_AT_POINT: f64 = 1e-8;
+
+/// Correction of a point along its branch at which the point has been found, relative to the size of the state: some
+/// units of round-off.
+pub(crate) const POINT_ROUND_OFF: f64 = 1e-14;
+
+/// Largest such correction that is left where corrections no longer become smaller. Load maxima are flat: where the load
+/// rate has an error of 1e-14, the place of the maximum has one of 1e-14 over the curvature of the path.
+pub(crate) const ACCEPTED_CORRECTION: f64 = 1e-10;
+
+/// Largest correction along a branch in one iteration, relative to the size of the state and of its increment.
+pub(crate) const LARGEST_CORRECTION: f64 = 0.2;
+
+/// Distance between the extrapolated and the corrected critical point, relative to the distance between two points of the
+/// curve, from which on the step is refused: another critical point may have been found.
+pub(crate) const LARGEST_DEVIATION: f64 = 0.5;
+
+/// Such distances are never taken for shorter than this, in dimensionless displacement and load.
+pub(crate) const SHORTEST_CHORD: f64 = 1e-5;
+
+/// Shortest step of the parameter, relative to the range.
+pub(crate) const SHORTEST_STEP: f64 = 1e-7;
+
+/// Factor by which a step that was accepted grows.
+pub(crate) const STEP_GROWTH: f64 = 2.0;
+
+/// Where the kind of the critical points changes, the path is traced anew at this part of the step past the change: close to
+/// it the change of contact and the limit point are too close to each other to be told apart.
+pub(crate) const PAST_CHANGE: f64 = 0.25;
+
+/// Points of two histories coincide within this (dimensionless displacement and load).
+pub(crate) const SAME_POINT: f64 = 1e-7;
+
+/// The point asked for and the one on a path with all of its contact changes resolved coincide within this (dimensionless):
+/// a limit point is flat.
+pub(crate) const ASKED_POINT: f64 = 1e-4;

@@ -1,0 +1,75 @@
+// A curve: the load at limit points against a number of the model, smooth and nonsmooth ones apart, with the points where the
+// curve changes, and how it ends.
+
+import { FindingsView } from "./findings-view.js";
+import { element, fill, table } from "./dom.js";
+import { allRows } from "./findings-rows.js";
+import { axis, colourOf } from "./plot-style.js";
+import { placeWords } from "./sweep-values.js";
+import { kindWords, short, verbatim } from "./words.js";
+
+/** Milliseconds between drawings while points come in. */
+const AGAIN = 300;
+/** Points that stand in the table; the others are in the files. */
+const LISTED = 500;
+
+export class CurveView extends FindingsView {
+  constructor(section, told) {
+    super(section, told, { kind: "curve", place: "/v1/curves", title: "Limit points", pause: AGAIN });
+    this.rows = [];
+  }
+
+  async load(place, signal) {
+    this.rows = [];
+    await super.load(place, signal);
+    return allRows(place, signal, (rows) => this.rows.push(...rows));
+  }
+
+  come(rows) {
+    this.rows.push(...rows);
+    this.record.progress.points = this.rows.length;
+  }
+
+  hasFindings() {
+    return this.rows.length > 0;
+  }
+
+  progressWords() {
+    return `${this.record.progress.points} points.`;
+  }
+
+  remark() {
+    const { error, report } = this.record;
+    const ends = report?.complete ? ` Towards smaller values: ${report.ends_below}. Towards larger values: ${report.ends_above}.` : "";
+    return ` ${error ?? ""}${ends}`;
+  }
+
+  async drawFindings() {
+    const rows = this.rows.toSorted((a, b) => a.value - b.value || a.index - b.index);
+    const parameter = placeWords(this.record.plan.curve.parameter);
+    const changes = rows.filter((row) => row.codimension_two);
+    this.words.textContent = `The load factor at the limit point. ${changes.length
+      ? "Rings: the limit point changes its kind there, or the path to it its changes of contact." : ""}`;
+    const traces = ["smooth_limit", "nonsmooth_limit"].map((kind, place) => ({
+      type: "scatter", mode: "lines+markers", name: kindWords(kind), connectgaps: false,
+      x: rows.map(({ value }) => value),
+      // A point where the kind changes belongs to both lines.
+      y: rows.map((row, at) => (row.kind === kind || (row.codimension_two && rows[at + 1]?.kind === kind) ? row.load_factor : null)),
+      hovertemplate: `${kindWords(kind)}<br>%{x}: %{y:.8g}<extra></extra>`,
+      line: { color: colourOf(place) }, marker: { size: 6 },
+    })).filter(({ y }) => y.some((load) => load !== null));
+    if (changes.length) {
+      traces.push({
+        type: "scatter", mode: "markers", name: "change", x: changes.map(({ value }) => value),
+        y: changes.map((row) => row.load_factor), text: changes.map(({ event }) => verbatim(event ?? "")),
+        hovertemplate: "%{text}<br>%{x:.9g}: %{y:.8g}<extra></extra>",
+        marker: { size: 12, symbol: "circle-open", line: { width: 2 }, color: colourOf(2) },
+      });
+    }
+    await this.plot(traces, { xaxis: axis(parameter), yaxis: axis("load factor at the limit point"), showlegend: traces.length > 1 });
+    fill(this.listing, table([parameter, "load factor", "kind", "event"], rows.slice(0, LISTED).map((row) => [
+      Number(row.value.toPrecision(10)), Number(row.load_factor.toPrecision(10)), kindWords(row.kind),
+      row.event ?? (row.from_path ? "on a path traced for it" : ""),
+    ])), rows.length > LISTED ? element("p", { class: "quiet" }, `The first ${short(LISTED)} of ${rows.length}; the files have all of them.`) : null);
+  }
+}

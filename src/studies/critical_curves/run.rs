@@ -1,0 +1,87 @@
+//! Follows a curve of limit points and judges its points.
+
+use crate::check::measure::Judge;
+use crate::continuation::critical_curve::{
+    CriticalCurve, CurveEnd, CurveFailure, CurvePoint, CurveRange, CurveReport, CurveStart, DirectionEnd,
+};
+use crate::continuation::scene::Scene;
+use crate::model::{Curve, InputError, InputErrors};
+use crate::resources::cancel::CancelFlag;
+use crate::result::increment::Increment;
+use crate::studies::critical_curves::row::{CurveFound, CurveRow, CurveSummary};
+use std::ops::ControlFlow;
+
+/// Receives the points as they are found; breaks to end the curve.
+pub type AcceptRow<'a> = &'a mut dyn FnMut(&CurveRow) -> ControlFlow<()>;
+
+/// Follows a curve; every point is passed to `accept`. The findings are reproducible, bit for bit.
+///
+/// # Errors
+/// Mistakes of the model at its own value; a path without this limit point, or one that cannot be followed.
+pub fn run(curve: &Curve, cancel: &CancelFlag, accept: AcceptRow<'_>) -> Result<CurveFound, InputErrors> {
+    let request_at = |value: f64| {
+        let mut request = curve.request(value)?;
+        // A point says the displacements and contacts of the whole model, whatever increments are to record.
+        request.analysis.record = None;
+        Ok::<_, InputErrors>(request)
+    };
+    let family = |value: f64| Scene::new(&request_at(value)?);
+    let [from, to] = curve.settings.range;
+    let range = CurveRange { from, to, start: curve.start, step: curve.step };
+    let start = match (curve.settings.increment, curve.settings.limit_point) {
+        (Some(index), _) => CurveStart::Increment(index),
+        (None, asked) => CurveStart::LimitPoint(asked.unwrap_or(1)),
+    };
+    let mut rows: Vec<CurveRow> = Vec::new();
+    let mut take = |point: CurvePoint| {
+        let Ok(request) = request_at(point.value) else { return ControlFlow::Break(()) };
+        let Ok(scene) = Scene::new(&request) else { return ControlFlow::Break(()) };
+        let plan = scene.plan();
+        let mut judge = Judge::new(&request, plan.displacement_scale, &plan.load_scales);
+        let measure = judge.judge_state(&point.increment, &point.stage_ends);
+        let Increment { index, stage, load_factor, displacements, contacts, point: kind, .. } = point.increment;
+        let row = CurveRow {
+            index,
+            value: point.value,
+            kind: kind.kind,
+            stage,
+            load_factor,
+            displacements,
+            contacts,
+            event: kind.event,
+            codimension_two: point.codimension_two,
+            from_path: point.from_path,
+            measure,
+        };
+        let answer = accept(&row);
+        rows.push(row);
+        answer
+    };
+    let report = CriticalCurve::new(&family, range, cancel.clone()).follow(start, &mut take);
+    let CurveReport { end, paths, newton_iterations, .. } = report.map_err(refused)?;
+    let (ends_below, ends_above, complete) = match end {
+        CurveEnd::Complete { below, above } => (Some(told(&below)), Some(told(&above)), true),
+        CurveEnd::Cancelled => (None, None, false),
+    };
+    let begun = CurveFound::begun(curve.name.clone(), curve.settings.clone(), curve.dimension);
+    let summary = CurveSummary { ends_below, ends_above, paths, newton_iterations, complete };
+    Ok(begun.with(rows, Some(summary)))
+}
+
+fn refused(failure: CurveFailure) -> InputErrors {
+    match failure {
+        CurveFailure::Model(errors) => errors,
+        CurveFailure::Refused(refusal) => InputErrors(vec![InputError::new("/curve", refusal.to_string())]),
+    }
+}
+
+/// The end of a curve in words.
+fn told(end: &DirectionEnd) -> String {
+    match end {
+        DirectionEnd::Range => "the end of the range is reached".to_owned(),
+        DirectionEnd::Lost { value, why } => {
+            format!("the limit point does not go on past {value}: {why}")
+        }
+        DirectionEnd::Model { value, errors } => format!("the model is refused at {value}: {errors}"),
+    }
+}

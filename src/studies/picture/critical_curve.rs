@@ -1,0 +1,97 @@
+//! The picture of a curve of limit points: their load against the parameter.
+
+use crate::model::InputError;
+use crate::result::increment::PointKind;
+use crate::studies::critical_curves::{CurveFound, CurveRow};
+use crate::studies::picture::PlotError;
+use crate::studies::picture::axis::Axis;
+use crate::studies::picture::chart::{self, CAPTION, MARGIN, Side};
+use crate::studies::picture::shapes::{self, Drawn, FINE, INK, Lettering, PAPER, Place, Sheet};
+use plotters::prelude::{Circle, PathElement, RGBColor};
+use plotters::style::Color;
+
+/// Widths and heights, in pixels.
+const CHART: i32 = 640;
+const LEGEND: i32 = 240;
+const HEIGHT: i32 = 480;
+const DOT: i32 = 3;
+const CHANGE: i32 = 6;
+const ROW: i32 = 22;
+const TICKS: usize = 9;
+const LONGEST_NAME: usize = 32;
+
+const SMOOTH: RGBColor = RGBColor(25, 85, 150);
+const NONSMOOTH: RGBColor = RGBColor(190, 20, 40);
+const PLAIN: Lettering = Lettering { size: 12, color: &INK, bold: false, centred: false };
+
+fn color(kind: PointKind) -> RGBColor {
+    if kind == PointKind::NonsmoothLimit { NONSMOOTH } else { SMOOTH }
+}
+
+/// The picture as SVG text: the same for the same rows.
+///
+/// # Errors
+/// The curve has no points.
+pub fn svg(found: &CurveFound) -> Result<String, PlotError> {
+    if found.rows.is_empty() {
+        return Err(PlotError::NoPoints);
+    }
+    let across = Axis::showing(found.rows.iter().map(|row| row.value), TICKS);
+    let load = Axis::showing(found.rows.iter().map(|row| row.load_factor), TICKS);
+    let drawn = shapes::svg(CHART + LEGEND, HEIGHT, |sheet| {
+        draw_chart(sheet, found, &across, &load)?;
+        legend(sheet)
+    });
+    drawn.map_err(|error| PlotError::Drawing(error.to_string()))
+}
+
+fn draw_chart(sheet: &Sheet<'_>, found: &CurveFound, across: &Axis, load: &Axis) -> Drawn {
+    let (part, _) = sheet.split_horizontally(CHART * FINE);
+    let parameter = InputError::new(found.curve.parameter.as_str(), "").place();
+    let parameter = parameter.strip_prefix("model.").unwrap_or(&parameter);
+    let sides = [
+        Side { name: across.named(parameter), range: across.range.clone(), tick: &|at| across.tick(at), ticks: TICKS },
+        Side {
+            name: load.named("load factor at the limit point"),
+            range: load.range.clone(),
+            tick: &|at| load.tick(at),
+            ticks: TICKS,
+        },
+    ];
+    let chart = chart::chart(&part, CHART, Some(found.name.as_deref().unwrap_or("curve of limit points")), sides)?;
+    let place =
+        |row: &CurveRow| -> Place { chart.backend_coord(&(across.drawn(row.value), load.drawn(row.load_factor))) };
+    for pair in found.rows.windows(2) {
+        // A point where the kind changes belongs to both sides.
+        let kind = if pair[0].codimension_two { pair[1].kind } else { pair[0].kind };
+        sheet.draw(&PathElement::new(vec![place(&pair[0]), place(&pair[1])], color(kind).stroke_width(14)))?;
+    }
+    for row in &found.rows {
+        if row.codimension_two {
+            sheet.draw(&Circle::new(place(row), CHANGE * FINE, PAPER.filled()))?;
+            sheet.draw(&Circle::new(place(row), CHANGE * FINE, INK.stroke_width(14)))?;
+        } else {
+            sheet.draw(&Circle::new(place(row), DOT * FINE, color(row.kind).filled()))?;
+        }
+    }
+    Ok(())
+}
+
+fn legend(sheet: &Sheet<'_>) -> Drawn {
+    let left = CHART + MARGIN / 2;
+    let entries = [
+        ("smooth limit point", Some(SMOOTH)),
+        ("nonsmooth limit point", Some(NONSMOOTH)),
+        ("change of kind or path", None),
+    ];
+    for (number, (words, color)) in (0..).zip(entries) {
+        let middle = CAPTION + number * ROW + ROW / 2;
+        let at = ((left + 8) * FINE, middle * FINE);
+        match color {
+            Some(color) => sheet.draw(&Circle::new(at, DOT * FINE, color.filled()))?,
+            None => sheet.draw(&Circle::new(at, CHANGE * FINE, INK.stroke_width(14)))?,
+        }
+        PLAIN.write(sheet, ((left + 22) * FINE, middle * FINE), words, LONGEST_NAME)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,207 @@
+//! Limit points followed in a parameter, beside closed forms and beside paths of their own.
+
+use crate::common::paths::{close, scene_file};
+use crate::common::random::random_scene;
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
+use arcslip::model::request::{Events, StageControl};
+use arcslip::model::{Curve, InputErrors, JobRequest};
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::{Increment, PointKind};
+use arcslip::studies::critical_curves::{self, CurveFound, CurveRow, CurveSummary};
+use serde_json::{Value, json};
+use std::f64::consts::FRAC_PI_2;
+use std::ops::ControlFlow;
+
+fn curve_of(request: &JobRequest, settings: &Value) -> Result<Curve, InputErrors> {
+    let mut document = serde_json::to_value(request).expect("JSON");
+    document["curve"] = settings.clone();
+    Curve::read(document.to_string().as_bytes())
+}
+
+fn followed(curve: &Curve) -> Result<CurveFound, InputErrors> {
+    let found = critical_curves::run(curve, &CancelFlag::default(), &mut |_| ControlFlow::Continue(()))?;
+    for row in &found.rows {
+        assert!(row.measure.largest_of_state() <= 1e-9, "{}: {:?}", row.value, row.measure);
+    }
+    assert!(found.rows.windows(2).all(|pair| pair[0].value <= pair[1].value));
+    Ok(found)
+}
+
+/// The summary of a curve that was followed to both ends of its range, or to where it is lost.
+fn ended(found: &CurveFound) -> &CurveSummary {
+    let summary = found.summary.as_ref().expect("a summary");
+    assert!(summary.complete, "{summary:?}");
+    summary
+}
+
+fn is_limit(kind: PointKind) -> bool {
+    matches!(kind, PointKind::SmoothLimit | PointKind::NonsmoothLimit)
+}
+
+/// The distance between a point of a curve and the nearest limit point of a path of its own, in load and displacements.
+fn off_path(curve: &Curve, row: &CurveRow) -> Option<f64> {
+    let mut request = curve.request(row.value).expect("a model");
+    request.analysis.events = Events::All;
+    // The limit point may come later on it than on the first path.
+    request.analysis.max_increments = 1_000;
+    let scene = Scene::new(&request).expect("a scene");
+    let load = scene.plan().load_scales[0];
+    let distance = |one: &Increment| {
+        let pairs = one.displacements.values().flatten().zip(row.displacements.values().flatten());
+        let moved = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / scene.plan().displacement_scale;
+        moved.max((one.load_factor - row.load_factor).abs() / load)
+    };
+    let limits = Path::new(&scene, CancelFlag::default()).filter(|one| is_limit(one.point.kind));
+    limits.filter(|one| one.stage == row.stage).map(|one| distance(&one)).min_by(f64::total_cmp)
+}
+
+/// The largest distance of ordinary points from paths of their own.
+fn worst(curve: &Curve, found: &CurveFound) -> f64 {
+    let ordinary = found.rows.iter().filter(|row| !row.codimension_two);
+    ordinary.map(|row| off_path(curve, row).unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
+}
+
+#[test]
+fn the_limit_load_of_the_arch_type_truss_grows_with_friction() {
+    let settings = json!({"parameter": "/model/contacts/*/friction", "range": [0, 2], "step": 0.1});
+    let curve = curve_of(&scene_file("arch-type-truss"), &settings).expect("a curve");
+    let found = followed(&curve).expect("a curve");
+    let summary = ended(&found);
+    assert_eq!(summary.paths, 1);
+    assert_eq!(found.rows.len(), 21);
+    assert!(found.rows.iter().all(|row| row.kind == PointKind::SmoothLimit));
+    assert!(found.rows.windows(2).all(|pair| pair[0].load_factor < pair[1].load_factor));
+    let known = found.rows.iter().find(|row| row.value == 0.4).expect("the model's own value");
+    close(known.load_factor, 0.009_567_590_7, 1e-10, "as published");
+    let off = worst(&curve, &found);
+    println!("{off:e} from paths of their own; {} Newton iterations", summary.newton_iterations);
+    assert!(off <= 1e-8, "{off:e}");
+}
+
+/// Half an arch on a rough floor, of beams with three nodes.
+fn arch(friction: f64) -> JobRequest {
+    let count = 32;
+    let mut nodes = serde_json::Map::new();
+    for k in 0..=count {
+        let angle = FRAC_PI_2 * f64::from(k) / f64::from(count);
+        nodes.insert(format!("n{k}"), json!([angle.sin(), if k == count { 0.0 } else { angle.cos() }]));
+    }
+    let element = |k: i32| {
+        let ends = [0, 1, 2].map(|one| format!("n{}", 2 * k + one));
+        json!({"kind": "beam", "nodes": ends, "axial_stiffness": 1e6, "bending_stiffness": 1.0})
+    };
+    let elements: Vec<Value> = (0..count / 2).map(element).collect();
+    let request = json!({
+        "model": {
+            "dimension": 2, "nodes": nodes, "elements": elements, "supports": {"n0": ["x", "rz"]},
+            "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}},
+            "contacts": [{"node": format!("n{count}"), "obstacle": "floor", "friction": friction}],
+            "stages": [{
+                "name": "press", "forces": {"n0": [0, -0.5]},
+                "until": {"displacement": {"node": "n0", "component": "y", "below": -1}},
+            }],
+        },
+    });
+    serde_json::from_value(request).expect("a request")
+}
+
+#[test]
+fn the_limit_point_of_the_arch_becomes_smooth_at_its_critical_friction() {
+    for (start, step) in [(0.8, 0.05), (1.2, 0.037)] {
+        let settings = json!({"parameter": "/model/contacts/0/friction", "range": [0.65, 1.3], "step": step});
+        let curve = curve_of(&arch(start), &settings).expect("a curve");
+        let found = followed(&curve).expect("a curve");
+        assert_eq!(ended(&found).paths, 2);
+        let changes: Vec<&CurveRow> = found.rows.iter().filter(|row| row.codimension_two).collect();
+        let [change] = changes[..] else { panic!("{changes:?}") };
+        println!("from {start}: {:.9} at {:.9}", change.value, change.load_factor);
+        close(change.value, 1.0370, 1e-4, "as published");
+        for row in found.rows.iter().filter(|row| !row.codimension_two) {
+            let kind = if row.value < change.value { PointKind::NonsmoothLimit } else { PointKind::SmoothLimit };
+            assert_eq!(row.kind, kind, "{}", row.value);
+        }
+        let off = worst(&curve, &found);
+        println!("{off:e} from paths of their own");
+        assert!(off <= 1e-8, "{off:e}");
+    }
+}
+
+/// The thrust ratio of the stuck arch is 2/π at the first load: with less friction the foot slides from the start.
+#[test]
+fn the_nonsmooth_limit_point_of_the_arch_is_lost_where_its_foot_slides_from_the_start() {
+    let settings = json!({"parameter": "/model/contacts/0/friction", "range": [0.5, 0.8]});
+    let found = followed(&curve_of(&arch(0.8), &settings).expect("a curve")).expect("a curve");
+    let end = found.summary.and_then(|summary| summary.ends_below).expect("an end");
+    assert!(end.contains("does not go on past 0.63"), "{end}");
+}
+
+/// `L³ = L0` at the limit point: its load over the height of the truss in closed form, and no limit point without height.
+#[test]
+fn the_limit_load_of_von_mises_truss_over_its_height() {
+    let settings = json!({"parameter": "/model/nodes/apex/1", "range": [0.05, 0.9]});
+    let curve = curve_of(&scene_file("von-mises-truss"), &settings).expect("a curve");
+    let found = followed(&curve).expect("a curve");
+    assert!(ended(&found).complete && found.rows.len() > 30);
+    for row in &found.rows {
+        let rest = row.value.hypot(1.0);
+        let height = (rest.powf(2.0 / 3.0) - 1.0).sqrt();
+        let length = height.hypot(1.0);
+        close(row.load_factor, 2.0 * (1.0 - length / rest) * height / length, 1e-13, "load");
+        close(row.value + row.displacements["apex"][1], height, 1e-9, "height");
+    }
+}
+
+/// Klarbring's node is pressed in one stage and pulled in the next: the limit points at which it slips and leaves the floor.
+#[test]
+fn limit_points_of_later_stages_are_followed_with_what_the_stages_before_left() {
+    let request = scene_file("klarbring");
+    for limit in [1, 2] {
+        let settings = json!({"parameter": "/model/contacts/0/friction", "range": [1.3, 1.9], "limit_point": limit});
+        let curve = curve_of(&request, &settings).expect("a curve");
+        let found = followed(&curve).expect("a curve");
+        assert!(ended(&found).complete);
+        assert!(found.rows.iter().all(|row| row.stage == request.model.stages[1].name.as_str().into()));
+        let off = worst(&curve, &found);
+        println!("limit point {limit}: {off:e}, {} rows", found.rows.len());
+        assert!(off <= 1e-8, "{off:e}");
+    }
+}
+
+/// Random scenes: every point of a curve is a limit point of a path of its own.
+#[test]
+fn curves_of_random_scenes_agree_with_paths() {
+    let (mut curves, mut points, mut changes, mut lost) = (0, 0, 0, 0);
+    let mut faults = Vec::new();
+    for seed in 0..200 {
+        let mut request = random_scene(seed);
+        request.model.stages.iter_mut().for_each(|stage| stage.control = StageControl::Path);
+        let own = request.model.contacts.first().map_or(0.0, |contact| contact.friction);
+        if own <= 0.0 {
+            continue;
+        }
+        let settings = json!({
+            "parameter": "/model/contacts/0/friction", "range": [0.8 * own, 1.2 * own], "step": 0.05 * own,
+        });
+        let Ok(curve) = curve_of(&request, &settings) else { continue };
+        let Ok(found) = followed(&curve) else { continue };
+        curves += 1;
+        points += found.rows.len();
+        changes += found.rows.iter().filter(|row| row.codimension_two).count();
+        for (end, value) in [(&ended(&found).ends_below, 0.8 * own), (&ended(&found).ends_above, 1.2 * own)] {
+            if let Some(end) = end.as_ref().filter(|end| end.contains("does not go on")) {
+                println!("{seed}, to {value}: {end}");
+                lost += 1;
+            }
+        }
+        for row in found.rows.iter().filter(|row| !row.codimension_two) {
+            let off = off_path(&curve, row).unwrap_or(f64::INFINITY);
+            if off > 1e-8 {
+                faults.push((seed, row.value, off));
+            }
+        }
+    }
+    println!("{curves} curves, {points} points, {changes} changes, {lost} lost; off: {faults:?}");
+    assert!(curves > 20, "{curves}");
+    assert!(faults.is_empty(), "{faults:?}");
+}
