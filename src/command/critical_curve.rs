@@ -3,7 +3,7 @@
 use crate::command::options::{bounds, input};
 use crate::command::output::findings;
 use crate::command::output::outcome::{FAILED, Failure, Outcome};
-use crate::model::{Curve, decode};
+use crate::model::{ParameterCurve, decode};
 use crate::resources::cancel::CancelFlag;
 use crate::studies::critical_curves;
 use std::ops::ControlFlow;
@@ -48,7 +48,7 @@ fn range(argument: &str) -> Result<[f64; 2], String> {
 
 pub fn run(arguments: &Arguments) -> Outcome {
     arguments.written.check()?;
-    let curve = Curve::read(&arguments.text()?).map_err(input::refused)?;
+    let curve = ParameterCurve::read(&arguments.text()?).map_err(input::refused)?;
     let progress = findings::counter("points");
     let accept = &mut |_: &critical_curves::CurveRow| {
         progress.inc(1);

@@ -14,7 +14,7 @@ const STEPS: f64 = 40.0;
 
 /// A decoded curve, whose models are made one by one.
 #[derive(Debug, Clone)]
-pub struct Curve {
+pub struct ParameterCurve {
     pub name: Option<String>,
     pub settings: CurveSettings,
     /// The model's own value of the parameter.
@@ -26,7 +26,7 @@ pub struct Curve {
     template: Template,
 }
 
-impl Curve {
+impl ParameterCurve {
     /// Reads a curve and checks its model at its own value.
     ///
     /// # Errors

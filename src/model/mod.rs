@@ -16,7 +16,7 @@ pub mod runs;
 pub(crate) mod solids;
 mod template;
 
-pub use curves::Curve;
+pub use curves::ParameterCurve;
 pub use input::error::{InputError, InputErrors};
 pub use request::study::StudyRequest;
 pub use request::sweep::SweepRequest;

@@ -176,6 +176,35 @@ async fn another_direction_is_followed_and_drawn_beside_the_path() {
     browser.close(&service.url, &[]).await;
 }
 
+/// From the form below the directions to the picture of the curve, and on to the list.
+#[tokio::test]
+async fn a_limit_point_is_followed_in_friction() {
+    let Some(browser) = Browser::open().await else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let service = Process::serve(&folder.path().join("jobs.db"), &[]);
+    let client = process::client();
+    let id = process::submit(&client, &service.url, "/v1/jobs", &scene("klarbring")).await;
+    process::until(&client, &service.url, &format!("/v1/jobs/{id}"), process::has_ended).await;
+    browser.page.goto(&format!("{}/?jobs={id}", service.url)).await.expect("a page");
+    browser.until("document.querySelector('#continue') !== null").await;
+    assert_eq!(browser.ask("document.getElementById('curve-parameter').value").await, "/model/contacts/0/friction");
+    // A range without the model's own value is refused in words.
+    browser.put("#curve-from", "1.6").await;
+    browser.put("#curve-to", "2").await;
+    browser.press("#continue").await;
+    browser.until("document.querySelector('#continuing [role=alert]').textContent.includes('own value 1.5')").await;
+    browser.put("#curve-from", "1").await;
+    browser.press("#continue").await;
+    browser.until("document.getElementById('curve-plot')?.data?.length >= 2").await;
+    browser.until("document.getElementById('curve-status').textContent === 'completed'").await;
+    browser.until("document.getElementById('curve').textContent.includes('the load no longer turns')").await;
+    let drawn = browser.ask("document.getElementById('curve-plot').data.map(({name}) => name)").await;
+    assert_eq!(drawn, json!(["limit point at a contact change", "change"]));
+    assert!(browser.ask("location.search").await.as_str().expect("text").starts_with("?curve="));
+    browser.until("document.querySelector('#lists a[href^=\"/?curve=\"]') !== null").await;
+    browser.close(&service.url, &["status of 422"]).await;
+}
+
 /// The program on that port.
 fn serve_on(port: u16, database: &Path) -> Process {
     let mut command = Command::new(env!("CARGO_BIN_EXE_arcslip"));

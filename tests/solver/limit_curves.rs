@@ -5,7 +5,7 @@ use crate::common::random::random_scene;
 use arcslip::continuation::path::iterator::Path;
 use arcslip::continuation::scene::Scene;
 use arcslip::model::request::{Events, StageControl};
-use arcslip::model::{Curve, InputErrors, JobRequest};
+use arcslip::model::{InputErrors, JobRequest, ParameterCurve};
 use arcslip::resources::cancel::CancelFlag;
 use arcslip::result::increment::{Increment, PointKind};
 use arcslip::studies::critical_curves::{self, CurveFound, CurveRow, CurveSummary};
@@ -13,18 +13,18 @@ use serde_json::{Value, json};
 use std::f64::consts::FRAC_PI_2;
 use std::ops::ControlFlow;
 
-fn curve_of(request: &JobRequest, settings: &Value) -> Result<Curve, InputErrors> {
+fn curve_of(request: &JobRequest, settings: &Value) -> Result<ParameterCurve, InputErrors> {
     let mut document = serde_json::to_value(request).expect("JSON");
     document["curve"] = settings.clone();
-    Curve::read(document.to_string().as_bytes())
+    ParameterCurve::read(document.to_string().as_bytes())
 }
 
-fn followed(curve: &Curve) -> Result<CurveFound, InputErrors> {
+fn followed(curve: &ParameterCurve) -> Result<CurveFound, InputErrors> {
     let found = critical_curves::run(curve, &CancelFlag::default(), &mut |_| ControlFlow::Continue(()))?;
     for row in &found.rows {
         assert!(row.measure.largest_of_state() <= 1e-9, "{}: {:?}", row.value, row.measure);
     }
-    assert!(found.rows.windows(2).all(|pair| pair[0].value <= pair[1].value));
+    assert!(found.rows.windows(2).all(|pair| pair[0].place < pair[1].place));
     Ok(found)
 }
 
@@ -40,7 +40,7 @@ fn is_limit(kind: PointKind) -> bool {
 }
 
 /// The distance between a point of a curve and the nearest limit point of a path of its own, in load and displacements.
-fn off_path(curve: &Curve, row: &CurveRow) -> Option<f64> {
+fn off_path(curve: &ParameterCurve, row: &CurveRow) -> Option<f64> {
     let mut request = curve.request(row.value).expect("a model");
     request.analysis.events = Events::All;
     // The limit point may come later on it than on the first path.
@@ -57,7 +57,7 @@ fn off_path(curve: &Curve, row: &CurveRow) -> Option<f64> {
 }
 
 /// The largest distance of ordinary points from paths of their own.
-fn worst(curve: &Curve, found: &CurveFound) -> f64 {
+fn worst(curve: &ParameterCurve, found: &CurveFound) -> f64 {
     let ordinary = found.rows.iter().filter(|row| !row.codimension_two);
     ordinary.map(|row| off_path(curve, row).unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
 }
@@ -129,11 +129,13 @@ fn the_limit_point_of_the_arch_becomes_smooth_at_its_critical_friction() {
 
 /// The thrust ratio of the stuck arch is 2/π at the first load: with less friction the foot slides from the start.
 #[test]
-fn the_nonsmooth_limit_point_of_the_arch_is_lost_where_its_foot_slides_from_the_start() {
+fn the_limit_point_of_the_arch_is_lost_where_its_foot_slides_from_the_start() {
     let settings = json!({"parameter": "/model/contacts/0/friction", "range": [0.5, 0.8]});
     let found = followed(&curve_of(&arch(0.8), &settings).expect("a curve")).expect("a curve");
-    let end = found.summary.and_then(|summary| summary.ends_below).expect("an end");
-    assert!(end.contains("does not go on past 0.63"), "{end}");
+    let end = ended(&found).ends_below.clone().expect("an end");
+    assert!(end.contains("does not go on past 0.6366") && end.contains("where stage \"press\" begins"), "{end}");
+    let change = found.rows.iter().find(|row| row.codimension_two).expect("a change");
+    close(change.value, std::f64::consts::FRAC_2_PI, 1e-5, "the thrust ratio");
 }
 
 /// `L³ = L0` at the limit point: its load over the height of the truss in closed form, and no limit point without height.
@@ -150,6 +152,34 @@ fn the_limit_load_of_von_mises_truss_over_its_height() {
         close(row.load_factor, 2.0 * (1.0 - length / rest) * height / length, 1e-13, "load");
         close(row.value + row.displacements["apex"][1], height, 1e-9, "height");
     }
+}
+
+/// With a spring `k` under the apex `1/L³ = 1/L0 + k/2` at both limit points, which meet at `L = 1`: there the curve turns back.
+#[test]
+fn the_curve_turns_back_where_maximum_and_minimum_of_the_load_meet() {
+    let mut request = serde_json::to_value(scene_file("von-mises-truss")).expect("JSON");
+    let spring = json!({"kind": "spring", "nodes": ["apex"], "stiffness": [[0, 0], [0, 0.02]]});
+    request["model"]["elements"].as_array_mut().expect("elements").push(spring);
+    let request: JobRequest = serde_json::from_value(request).expect("a request");
+    let settings = json!({"parameter": "/model/elements/2/stiffness/1/1", "range": [0.01, 0.3], "step": 0.02});
+    let found = followed(&curve_of(&request, &settings).expect("a curve")).expect("a curve");
+    assert_eq!(ended(&found).paths, 1);
+    let rest = 1.25_f64.sqrt();
+    let turns: Vec<&CurveRow> = found.rows.iter().filter(|row| row.codimension_two).collect();
+    let [turn] = turns[..] else { panic!("{turns:?}") };
+    close(turn.value, 2.0 * (1.0 - 1.0 / rest), 1e-9, "the stiffness without snap-through");
+    close(turn.displacements["apex"][1], -0.5, 1e-4, "flat");
+    for row in &found.rows {
+        // The maximum before the turn, the minimum past it.
+        let sign = if row.place < turn.place { 1.0 } else { -1.0 };
+        let length = (1.0 / rest + 0.5 * row.value).powf(-1.0 / 3.0);
+        let height = sign * (length * length - 1.0).max(0.0).sqrt();
+        let load = -2.0 * (1.0 / rest - 1.0 / length) * height + row.value * (0.5 - height);
+        close(row.load_factor, load, 1e-10, "load");
+    }
+    let ends = [found.rows.first(), found.rows.last()].map(|row| row.expect("a row").value);
+    assert_eq!(ends, [0.01, 0.01], "once at the maximum, once at the minimum");
+    assert!(found.rows.len() < 60, "{}", found.rows.len());
 }
 
 /// Klarbring's node is pressed in one stage and pulled in the next: the limit points at which it slips and leaves the floor.
@@ -194,7 +224,12 @@ fn curves_of_random_scenes_agree_with_paths() {
                 lost += 1;
             }
         }
-        for row in found.rows.iter().filter(|row| !row.codimension_two) {
+        // Where limit points are about to vanish, the steps of a path pass over them.
+        let is_crowded = |row: &CurveRow| {
+            let beside = found.rows.iter().filter(|other| other.place != row.place);
+            beside.map(|other| (other.value - row.value).abs()).any(|width| width < 1e-3 * own)
+        };
+        for row in found.rows.iter().filter(|row| !row.codimension_two && !is_crowded(row)) {
             let off = off_path(&curve, row).unwrap_or(f64::INFINITY);
             if off > 1e-8 {
                 faults.push((seed, row.value, off));

@@ -297,6 +297,26 @@ class Service(unittest.TestCase):
         self.assertEqual(len(study.report()["rows"]), 2)
 
     @ALL
+    def test_curves(self):
+        job = self.client.submit(self.client.scene("arch-type-truss"))
+        path = job.path()
+        limit = next(row["index"] for row in path.increments if row["point"]["kind"] == "smooth_limit")
+        curve = job.limit_curve("/model/contacts/*/friction", [0, 1], step=0.25, increment=limit)
+        self.assertEqual(curve.wait(), "completed")
+        self.assertTrue(curve.report()["complete"])
+        rows = curve.rows()
+        self.assertEqual([row["value"] for row in rows][0], 0)
+        self.assertEqual(sorted(row["place"] for row in rows), [row["place"] for row in rows])
+        frame = curve.to_frame()
+        self.assertEqual(len(frame), len(rows))
+        self.assertIn("b2.y", frame)
+        other = self.client.curve(self.client.scene("arch-type-truss"), "/model/contacts/*/friction", [0, 1], step=0.25)
+        other.wait()
+        self.assertEqual([row["load_factor"] for row in other.rows()], [row["load_factor"] for row in rows])
+        with self.assertRaises(arcslip.InvalidModel):
+            job.limit_curve("/model/contacts/*/friction", [1, 0])
+
+    @ALL
     def test_tables_of_sweeps(self):
         friction = {"/model/contacts/0/friction": numpy.array([0, 0.5])}
         responses = {"limit": {"at": "first_limit"}}

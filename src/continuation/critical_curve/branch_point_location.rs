@@ -84,6 +84,23 @@ impl ModeBranch<'_> {
         (least <= ACCEPTED_CORRECTION * size).then_some(best)
     }
 
+    /// The point of the branch in a plane through a state, with the value of a quantity there.
+    pub fn in_plane(
+        &self,
+        event: EventFunction,
+        guess: &PointGuess,
+        plane: HyperplaneEquation<'_>,
+        work: &mut Work,
+    ) -> Option<(BranchPoint, f64)> {
+        let chord = guess.from.chord(&guess.state);
+        let mut found = self.correct(&guess.state, plane, (&guess.from, &chord), work)?;
+        if found.rate.product(&guess.rate) < 0.0 {
+            found.rate.scale(-1.0);
+        }
+        let value = event.value(self.loading, self.modes, &found.state, &found.rate);
+        Some((found, value))
+    }
+
     /// The direction of the branch at a state on it, closest to another direction.
     pub fn direction(&self, state: &State, towards: &Rate, work: &mut Work) -> Option<Rate> {
         let system = ModeSystem::new(self.loading, self.modes, self.anchor);

@@ -65,6 +65,8 @@ pub(super) enum Closing {
     Event(EventFunction),
     /// A bound of the stage, by its place among them.
     StageEnd(usize),
+    /// Nothing: the stage begins here.
+    StageBegin,
 }
 
 /// The state of a point and the directions of the path there, where Newton's method starts.
@@ -102,7 +104,7 @@ impl ContactHistory {
                 reached.push(std::mem::take(&mut load));
             }
             load = point.state.load;
-            let changes = !all_continue(&point.leaving_modes, &point.modes);
+            let changes = point.kind == PointKind::Start || !all_continue(&point.leaving_modes, &point.modes);
             // A limit point or bifurcation point on the way leaves no trace.
             if place < last && !changes && !point.stage_ends {
                 continue;
@@ -157,6 +159,7 @@ fn touching(scene: &Scene, point: &PassedPoint, reached: &[f64]) -> Vec<EventFun
 fn closing(scene: &Scene, point: &PassedPoint) -> Result<Closing, HistoryRefusal> {
     let stage = &scene.stages[point.stage];
     match point.event {
+        _ if point.kind == PointKind::Start => Ok(Closing::StageBegin),
         Some(EventFunction::End(end)) => {
             let place = stage.ends.iter().position(|other| *other == end);
             place.map(Closing::StageEnd).ok_or_else(|| HistoryRefusal::CountedEnd(stage.name.to_string()))

@@ -1,6 +1,6 @@
 //! A point of a curve of critical points in the user's units and names.
 
-use crate::continuation::critical_curve::contact_history::ContactHistory;
+use crate::continuation::critical_curve::contact_history::{Closing, ContactHistory, HistoryPoint};
 use crate::continuation::critical_curve::solved_history::{ConditionSide, PathCondition, SolvedHistory, scene_loading};
 use crate::continuation::path_state::resumable_state::constant_load;
 use crate::continuation::path_state::row_conversion::{self, RowSource};
@@ -13,6 +13,8 @@ use crate::step::event_functions::EventFunction;
 /// A point of a curve of critical points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurvePoint {
+    /// Place along the curve: 0 at its start, above 0 towards larger values first, below 0 towards smaller ones.
+    pub place: i64,
     /// The value of the parameter.
     pub value: f64,
     /// Whether the curve's points change their kind here, or the path to them its changes of contact.
@@ -71,6 +73,7 @@ pub(super) fn point(
     };
     let ends = scene.stages.iter().zip(&solved.reached).map(|(stage, load)| stage.load_factor(*load));
     CurvePoint {
+        place: 0,
         value: solved.parameter,
         codimension_two: note.codimension_two,
         from_path: note.from_path,
@@ -89,12 +92,18 @@ pub(super) fn kind_name(kind: PointKind) -> &'static str {
 
 /// What happens where a condition ends.
 pub(super) fn describe(scene: &Scene, history: &ContactHistory, condition: &PathCondition) -> String {
-    let (last, at) = (history.points.len() - 1, condition.point);
-    let what = what_happens(scene, condition, at == last);
-    if at == last {
-        return format!("{what} at the {}", kind_name(history.kind));
+    let kind = kind_name(history.kind);
+    let point = &history.points[condition.point];
+    let what = what_happens(scene, condition, condition.point + 1 == history.points.len());
+    if condition.point + 1 == history.points.len() {
+        return format!("{what} at the {kind}");
     }
-    format!("{what} at change {} of the {last} by which the path comes to the {}", at + 1, kind_name(history.kind))
+    if point.closing == Closing::StageBegin {
+        return format!("{what} where stage \"{}\" begins", scene.stages[point.stage].name);
+    }
+    let changes = |points: &[HistoryPoint]| points.iter().filter(|one| one.closing != Closing::StageBegin).count();
+    let (count, all) = (changes(&history.points[..=condition.point]), changes(&history.points) - 1);
+    format!("{what} at change {count} of the {all} by which the path comes to the {kind}")
 }
 
 fn what_happens(scene: &Scene, condition: &PathCondition, is_critical: bool) -> String {
@@ -131,9 +140,7 @@ fn what_happens(scene: &Scene, condition: &PathCondition, is_critical: bool) -> 
         | EventFunction::Slide { corner }
         | EventFunction::Hold { corner }
         | EventFunction::Return { corner } => format!("{} begins to slip in its corner", of_corner(corner)),
-        EventFunction::LoadRate { .. } if !is_critical => {
-            "another limit point of the path comes or goes where the load turns".to_owned()
-        }
+        EventFunction::LoadRate { .. } if !is_critical => "the load rate changes its sign".to_owned(),
         EventFunction::LoadRate { .. } if condition.about == ConditionSide::Leaving => {
             "the load no longer turns".to_owned()
         }

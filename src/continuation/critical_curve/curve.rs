@@ -5,11 +5,15 @@ use crate::continuation::critical_curve::contact_history::{ContactHistory, Point
 use crate::continuation::critical_curve::critical_point::{self, CurvePoint, PointNote};
 use crate::continuation::critical_curve::solved_history::{PathCondition, SolvedHistory};
 use crate::continuation::critical_curve::tolerances::{
-    LARGEST_DEVIATION, PASSED, PAST_CHANGE, SAME_POINT, SHORTEST_CHORD, SHORTEST_STEP, STEP_GROWTH,
+    LARGEST_DEVIATION, MODEL_STEP, PASSED, PAST_CHANGE, SAME_POINT, SHORTEST_CHORD, SHORTEST_STEP, STEP_GROWTH,
+    TURNING_STEP,
 };
 use crate::continuation::critical_curve::traced_history::{self, CurveRefusal, CurveStart};
+use crate::continuation::critical_curve::turning_point::{self, Turn};
 use crate::continuation::scene::Scene;
+use crate::mechanics::problem::state::State;
 use crate::model::InputErrors;
+use crate::model::input::limits::MAX_CURVE_POINTS;
 use crate::resources::cancel::CancelFlag;
 use crate::step::corrector::cost_counters::Work;
 use std::ops::ControlFlow;
@@ -20,6 +24,8 @@ const MOST_PATH_FACTOR: u64 = 8;
 const LEAST_PATH: u64 = 200;
 /// Critical points of such a path that are tried.
 const MOST_CANDIDATES: usize = 4;
+/// Most points of a curve: five times as many as the range may have steps, for what comes in addition.
+const MOST_POINTS: u64 = 5 * MAX_CURVE_POINTS;
 
 /// The values of the parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,6 +51,13 @@ pub enum DirectionEnd {
         value: f64,
         /// What happens there, in words.
         why: String,
+    },
+    /// The curve comes back to its start.
+    Closed,
+    /// The curve has as many points as one may have; the last is at this value.
+    Long {
+        /// The value.
+        value: f64,
     },
     /// The model is refused from this value on.
     Model {
@@ -95,6 +108,9 @@ pub struct CriticalCurve<'a> {
     cancel: CancelFlag,
     work: Work,
     points: u64,
+    /// Place along the curve of the next point, and the sense in which it is followed.
+    place: i64,
+    sense: f64,
     paths: u64,
     /// Most increments of a path that is traced past a change.
     longest_path: u64,
@@ -108,16 +124,39 @@ enum Stopped {
 
 /// The curve at its last point.
 #[derive(Clone)]
-struct Place {
-    history: ContactHistory,
-    here: SolvedHistory,
-    before: Option<SolvedHistory>,
+pub(super) struct Place {
+    pub history: ContactHistory,
+    pub here: SolvedHistory,
+    pub before: Option<SolvedHistory>,
+}
+
+/// The curve as it is followed in one direction.
+struct Walk {
+    place: Place,
+    /// Sense of the parameter, 1 or -1.
+    sense: f64,
+    /// The next step of the parameter.
+    step: f64,
+    has_turned: bool,
+}
+
+impl Walk {
+    /// The end of the range in front.
+    fn target(&self, range: &CurveRange) -> f64 {
+        if self.sense < 0.0 { range.from } else { range.to }
+    }
+
+    fn shorten(&mut self) -> ControlFlow<Stopped> {
+        self.step *= 0.5;
+        ControlFlow::Continue(())
+    }
 }
 
 impl<'a> CriticalCurve<'a> {
     /// A curve that has not begun.
     pub fn new(family: SceneFamily<'a>, range: CurveRange, cancel: CancelFlag) -> Self {
-        Self { family, range, cancel, work: Work::default(), points: 0, paths: 0, longest_path: LEAST_PATH }
+        let (work, longest_path) = (Work::default(), LEAST_PATH);
+        Self { family, range, cancel, work, points: 0, place: 0, sense: 1.0, paths: 0, longest_path }
     }
 
     /// Follows the curve from a critical point of the path to larger, then to smaller values.
@@ -135,8 +174,14 @@ impl<'a> CriticalCurve<'a> {
         let note = PointNote { event: None, codimension_two: false, from_path: true };
         let mut end = self.emit(&scene, &begin, note, accept).err();
         if end.is_none() {
-            for target in [self.range.to, self.range.from] {
-                match self.towards(begin.clone(), target, accept) {
+            for sense in [1.0, -1.0] {
+                (self.sense, self.place) = (sense, if sense < 0.0 { -1 } else { 1 });
+                if ends.first() == Some(&DirectionEnd::Closed) {
+                    // The other direction goes through the same points.
+                    ends.push(DirectionEnd::Closed);
+                    break;
+                }
+                match self.towards(begin.clone(), sense, accept) {
                     Stopped::Ended(direction) => ends.push(direction),
                     Stopped::Cancelled => {
                         end = Some(Stopped::Cancelled);
@@ -153,75 +198,95 @@ impl<'a> CriticalCurve<'a> {
         Ok(CurveReport { end, points, paths, newton_iterations })
     }
 
-    /// Follows the curve to a value of the parameter.
-    fn towards(&mut self, mut place: Place, target: f64, accept: AcceptPoint<'_>) -> Stopped {
-        let sense = if target < place.here.parameter { -1.0 } else { 1.0 };
-        let mut step = self.range.step;
-        while place.here.parameter != target {
-            match self.step(&mut place, sense, &mut step, target, accept) {
-                ControlFlow::Continue(()) => {}
-                ControlFlow::Break(stopped) => return stopped,
+    /// Follows the curve in one sense of the parameter, to an end of the range.
+    fn towards(&mut self, begin: Place, sense: f64, accept: AcceptPoint<'_>) -> Stopped {
+        let first = begin.here.critical().clone();
+        let mut walk = Walk { place: begin, sense, step: self.range.step, has_turned: false };
+        loop {
+            if walk.place.here.parameter == walk.target(&self.range) {
+                return Stopped::Ended(DirectionEnd::Range);
+            }
+            if let ControlFlow::Break(stopped) = self.step(&mut walk, accept) {
+                return stopped;
+            }
+            let is_start = walk.has_turned && walk.place.here.parameter == self.range.start;
+            if is_start && walk.place.here.critical().distance(&first) <= SAME_POINT * (1.0 + size_of(&first)) {
+                return Stopped::Ended(DirectionEnd::Closed);
+            }
+            if self.points >= MOST_POINTS {
+                return Stopped::Ended(DirectionEnd::Long { value: walk.place.here.parameter });
             }
         }
-        Stopped::Ended(DirectionEnd::Range)
     }
 
     /// One step of the parameter; a shorter one is tried next where it fails.
-    fn step(
-        &mut self,
-        place: &mut Place,
-        sense: f64,
-        step: &mut f64,
-        target: f64,
-        accept: AcceptPoint<'_>,
-    ) -> ControlFlow<Stopped> {
+    fn step(&mut self, walk: &mut Walk, accept: AcceptPoint<'_>) -> ControlFlow<Stopped> {
         if self.cancel.is_cancelled() {
             return ControlFlow::Break(Stopped::Cancelled);
         }
-        let value = self.next_value(place.here.parameter, sense, *step, target);
+        let here = walk.place.here.parameter;
+        let value = self.next_value(here, walk.sense, walk.step, walk.target(&self.range));
+        let is_shortest = walk.step <= self.shortest();
         let scene = match (self.family)(value) {
             Ok(scene) => scene,
-            Err(errors) if *step <= self.shortest() => {
+            Err(errors) if walk.step <= MODEL_STEP * self.range.step => {
                 return ControlFlow::Break(Stopped::Ended(DirectionEnd::Model { value, errors }));
             }
-            Err(_) => {
-                *step *= 0.5;
-                return ControlFlow::Continue(());
-            }
+            Err(_) => return walk.shorten(),
         };
-        let Some(solved) = self.near(place, &scene, value) else {
-            if *step > self.shortest() {
-                *step *= 0.5;
-                return ControlFlow::Continue(());
+        let Some(solved) = self.near(&walk.place, &scene, value) else {
+            if walk.step <= TURNING_STEP * self.range.step
+                && let Some(turn) = turning_point::turn(self.family, &walk.place, walk.sense, &mut self.work)
+            {
+                return self.turn_back(walk, turn, accept);
             }
-            let from = place.here.clone();
+            if !is_shortest {
+                return walk.shorten();
+            }
+            let from = walk.place.here.clone();
             let lost = || "its equations have no solution near by past this value".to_owned();
-            return self.go_on_past(place, &from, sense, target, accept, lost);
+            return self.go_on_past(walk, &from, accept, lost);
         };
         let broken = solved.broken();
         if broken.is_empty() {
-            self.send(&scene, place, solved, false, accept)?;
-            *step = (*step * STEP_GROWTH).min(self.range.step);
-            return ControlFlow::Continue(());
+            walk.step = (walk.step * STEP_GROWTH).min(self.range.step);
+            return self.send(&scene, &mut walk.place, solved, accept);
         }
-        let Some((scene, change, condition)) = self.change_before(place, value, &solved, &broken) else {
-            if *step <= self.shortest() {
-                let why = "a condition of the path ends there, and the place is not found".to_owned();
-                let value = place.here.parameter;
-                return ControlFlow::Break(Stopped::Ended(DirectionEnd::Lost { value, why }));
+        let Some((scene, change, condition)) = self.change_before(&walk.place, value, &solved, &broken) else {
+            if !is_shortest {
+                return walk.shorten();
             }
-            *step *= 0.5;
-            return ControlFlow::Continue(());
+            let why = "a condition of the path ends there, and the place is not found".to_owned();
+            return ControlFlow::Break(Stopped::Ended(DirectionEnd::Lost { value: here, why }));
         };
-        let what = critical_point::describe(&scene, &place.history, &condition);
+        let what = critical_point::describe(&scene, &walk.place.history, &condition);
         let note = PointNote { event: Some(what.clone()), codimension_two: true, from_path: false };
-        let (here, history) = (change.clone(), place.history.clone());
-        flow(self.emit(&scene, &Place { history, here, before: None }, note, accept))?;
-        *step = self.range.step;
-        if change.parameter == target {
+        let at_change = Place { here: change.clone(), history: walk.place.history.clone(), before: None };
+        flow(self.emit(&scene, &at_change, note, accept))?;
+        walk.step = self.range.step;
+        if change.parameter == walk.target(&self.range) {
             return ControlFlow::Break(Stopped::Ended(DirectionEnd::Range));
         }
-        self.go_on_past(place, &change, sense, target, accept, || what)
+        self.go_on_past(walk, &change, accept, || what)
+    }
+
+    /// Goes round a point where the curve turns back in the parameter.
+    fn turn_back(&mut self, walk: &mut Walk, turn: Turn, accept: AcceptPoint<'_>) -> ControlFlow<Stopped> {
+        let Turn { at: (scene, at), past: (scene_past, past) } = turn;
+        let event = Some("a load maximum and a load minimum meet and vanish; the curve turns back".to_owned());
+        walk.place.here = at.clone();
+        flow(self.emit(&scene, &walk.place, PointNote { event, codimension_two: true, from_path: false }, accept))?;
+        if !past.broken().is_empty() {
+            let why = "a condition of the path ends where the curve turns back".to_owned();
+            return ControlFlow::Break(Stopped::Ended(DirectionEnd::Lost { value: at.parameter, why }));
+        }
+        walk.sense = -walk.sense;
+        walk.has_turned = true;
+        walk.step = (past.parameter - at.parameter).abs().max(self.shortest());
+        self.send(&scene_past, &mut walk.place, past, accept)?;
+        // The chord from the turning point is no direction of the curve, which begins there at a right angle.
+        walk.place.before = None;
+        ControlFlow::Continue(())
     }
 
     /// The critical point at a value, found from the last ones of the curve; `None` where it is not the same one.
@@ -267,19 +332,17 @@ impl<'a> CriticalCurve<'a> {
     /// Goes on past a change, by a path traced there: its critical point must come from the same state.
     fn go_on_past(
         &mut self,
-        place: &mut Place,
+        walk: &mut Walk,
         change: &SolvedHistory,
-        sense: f64,
-        target: f64,
         accept: AcceptPoint<'_>,
         why: impl FnOnce() -> String,
     ) -> ControlFlow<Stopped> {
         let lost = |value: f64, why: String| ControlFlow::Break(Stopped::Ended(DirectionEnd::Lost { value, why }));
-        let value = stepped(change.parameter, sense * PAST_CHANGE * self.range.step, target);
+        let value = stepped(change.parameter, walk.sense * PAST_CHANGE * self.range.step, walk.target(&self.range));
         let (Ok(scene), Ok(scene_at_change)) = ((self.family)(value), (self.family)(change.parameter)) else {
             return lost(change.parameter, why());
         };
-        let stage = place.history.points.last().map_or(0, |point| point.stage);
+        let stage = walk.place.history.points.last().map_or(0, |point| point.stage);
         let expected = change.scales.express(change.critical(), stage, &scene);
         self.paths += 1;
         let candidates = traced_history::near(&scene, &expected, stage, self.longest_path, &self.cancel);
@@ -304,12 +367,12 @@ impl<'a> CriticalCurve<'a> {
             let Some(back) = self.back_to(&begin, &scene_at_change, change.parameter) else { continue };
             let at_change = back.scales.express(back.critical(), stage, &scene_at_change);
             let expected = change.scales.express(change.critical(), stage, &scene_at_change);
-            if at_change.distance(&expected) > SAME_POINT * (1.0 + chord_size(&expected)) {
+            if at_change.distance(&expected) > SAME_POINT * (1.0 + size_of(&expected)) {
                 continue;
             }
-            *place = Place { before: Some(back), ..begin };
+            walk.place = Place { before: Some(back), ..begin };
             let note = PointNote { event: None, codimension_two: false, from_path: true };
-            return flow(self.emit(&scene, place, note, accept));
+            return flow(self.emit(&scene, &walk.place, note, accept));
         }
         lost(change.parameter, why())
     }
@@ -332,17 +395,18 @@ impl<'a> CriticalCurve<'a> {
         scene: &Scene,
         place: &mut Place,
         solved: SolvedHistory,
-        from_path: bool,
         accept: AcceptPoint<'_>,
     ) -> ControlFlow<Stopped> {
         place.before = Some(std::mem::replace(&mut place.here, solved));
-        flow(self.emit(scene, place, PointNote { event: None, codimension_two: false, from_path }, accept))
+        flow(self.emit(scene, place, PointNote { event: None, codimension_two: false, from_path: false }, accept))
     }
 
     fn emit(&mut self, scene: &Scene, place: &Place, note: PointNote, accept: AcceptPoint<'_>) -> Result<(), Stopped> {
         let mut point = critical_point::point(scene, &place.history, &place.here, note, self.work);
         point.increment.index = self.points;
+        point.place = self.place;
         self.points += 1;
+        self.place += if self.sense < 0.0 { -1 } else { 1 };
         if accept(point).is_break() { Err(Stopped::Cancelled) } else { Ok(()) }
     }
 
@@ -369,12 +433,12 @@ fn stepped(from: f64, step: f64, target: f64) -> f64 {
     if (target - from).abs() <= step.abs() * (1.0 + 1e-9) { target } else { from + step }
 }
 
-fn chord_size(state: &crate::mechanics::problem::state::State) -> f64 {
+fn size_of(state: &State) -> f64 {
     state.displacement.iter().map(|value| value * value).sum::<f64>().sqrt().hypot(state.load)
 }
 
 /// Guesses at a value by the line through the last two points of the curve.
-fn extrapolated(place: &Place, scene: &Scene, value: f64) -> Vec<PointGuess> {
+pub(super) fn extrapolated(place: &Place, scene: &Scene, value: f64) -> Vec<PointGuess> {
     let Place { history, here, before } = place;
     let ratio = before.as_ref().map_or(0.0, |before| {
         let width = here.parameter - before.parameter;

@@ -9,7 +9,8 @@
 //! Along the curve the conditions under which a path passes through these points are watched. Where one of them ends, the
 //! critical point changes its kind, or the path to it its changes of contact: a point of codimension two, which is located
 //! in the parameter. Past it the path itself is traced once more, and its critical point at the same place goes on with the
-//! curve; where there is none, the curve ends, and this is said.
+//! curve; where there is none, the curve ends, and this is said. Where two limit points meet, the curve turns back in the
+//! parameter and goes on along the other one (`turning_point`).
 //!
 //! | file | contents |
 //! |---|---|
@@ -18,6 +19,7 @@
 //! | `solved_history` | all of them at one value of the parameter, and the conditions of the path |
 //! | `traced_history` | the history of a path, traced for it |
 //! | `curve` | the curve, from point to point |
+//! | `turning_point` | where it turns back in the parameter |
 //! | `critical_point` | a point of the curve in the user's units; its event in words |
 //! | `tolerances` | |
 
@@ -28,6 +30,7 @@ pub(crate) mod curve;
 mod solved_history;
 mod tolerances;
 mod traced_history;
+mod turning_point;
 
 pub use critical_point::CurvePoint;
 pub use curve::{CriticalCurve, CurveEnd, CurveFailure, CurveRange, CurveReport, DirectionEnd};

@@ -6,6 +6,7 @@ use crate::continuation::critical_curve::tolerances::PASSED;
 use crate::continuation::path_state::resumable_state::constant_load;
 use crate::continuation::scene::Scene;
 use crate::mechanics::contact::{Mode, Reaction};
+use crate::mechanics::equations::closing_equation::HyperplaneEquation;
 use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::loading::{LoadPattern, Loading};
 use crate::mechanics::problem::state::{Rate, State};
@@ -60,6 +61,8 @@ pub(super) struct SolvedHistory {
     /// Loads at which the stages before that of the critical point ended, dimensionless.
     pub reached: Vec<f64>,
     pub residual: f64,
+    /// The value of the event function at the critical point; 0 unless a plane stood in its place.
+    pub off_event: f64,
     /// Conditions with their values, relative to the scales of the quantities.
     pub conditions: Vec<(PathCondition, f64)>,
     pub scales: StateScales,
@@ -132,6 +135,18 @@ impl ContactHistory {
         guesses: &[PointGuess],
         work: &mut Work,
     ) -> Option<SolvedHistory> {
+        self.solve_up_to(scene, parameter, guesses, None, work)
+    }
+
+    /// As [`solve`](Self::solve), but for the last point: in place of its event it has a plane.
+    pub fn solve_up_to(
+        &self,
+        scene: &Scene,
+        parameter: f64,
+        guesses: &[PointGuess],
+        plane: Option<HyperplaneEquation<'_>>,
+        work: &mut Work,
+    ) -> Option<SolvedHistory> {
         let contacts = scene.contacts.len();
         if self.points.iter().any(|point| point.modes.len() != contacts || point.stage >= scene.stages.len()) {
             return None;
@@ -139,7 +154,7 @@ impl ContactHistory {
         let mut anchor = State::at_rest(&scene.structure, contacts);
         let (mut reached, mut held) = (Vec::new(), constant_load(scene, &[]));
         let (mut points, mut conditions) = (Vec::with_capacity(self.points.len()), Vec::new());
-        let (mut modes, mut residual) = (Vec::new(), 0.0);
+        let (mut modes, mut residual, mut off_event) = (Vec::new(), 0.0, 0.0);
         for (place, (point, guess)) in self.points.iter().zip(guesses).enumerate() {
             if reached.len() < point.stage {
                 while reached.len() < point.stage {
@@ -152,12 +167,33 @@ impl ContactHistory {
             }
             let loading = scene_loading(scene, point.stage, &held);
             let stage_ends = &scene.stages[point.stage].ends;
+            if point.closing == Closing::StageBegin {
+                let at = Solved { place, point, loading, force_scale: self.force_scale };
+                let leaving = at.leave(&anchor, &guess.rate, &mut conditions, work)?;
+                at.turns(None, Some(&leaving), &mut conditions);
+                points.push(PointGuess {
+                    state: anchor.clone(),
+                    from: anchor.clone(),
+                    rate: leaving.clone(),
+                    leaving_rate: Some(leaving),
+                });
+                continue;
+            }
             let closing = match point.closing {
+                Closing::StageBegin => return None,
                 Closing::Event(event) => event,
                 Closing::StageEnd(place) => EventFunction::End(*stage_ends.get(place)?),
             };
             let branch = ModeBranch { loading, modes: &point.modes, anchor: &anchor, force_scale: self.force_scale };
-            let mut found = branch.locate(closing, guess, work)?;
+            let is_last = place + 1 == self.points.len();
+            let mut found = match plane.filter(|_| is_last) {
+                Some(plane) => {
+                    let (found, value) = branch.in_plane(closing, guess, plane, work)?;
+                    off_event = value;
+                    found
+                }
+                None => branch.locate(closing, guess, work)?,
+            };
             if let EventFunction::End(end) = closing {
                 end.make_exact(&mut found.state);
             }
@@ -167,7 +203,8 @@ impl ContactHistory {
                 Some(towards) if point.changes => Some(at.leave(&found.state, towards, &mut conditions, work)?),
                 _ => None,
             };
-            at.turns(&found.rate, leaving.as_ref(), closing, &mut conditions);
+            let is_smooth = matches!(closing, EventFunction::LoadRate { .. });
+            at.turns(Some(&found.rate).filter(|_| !is_smooth), leaving.as_ref(), &mut conditions);
             (modes, residual) = (found.modes, found.residual);
             anchor = found.state.clone();
             points.push(PointGuess {
@@ -180,7 +217,7 @@ impl ContactHistory {
             of_mode.filter(|(_, mode)| **mode == Mode::Free).for_each(|(reaction, _)| *reaction = Reaction::default());
         }
         let scales = StateScales::of(scene);
-        Some(SolvedHistory { parameter, points, modes, reached, residual, conditions, scales })
+        Some(SolvedHistory { parameter, points, modes, reached, residual, off_event, conditions, scales })
     }
 }
 
@@ -249,19 +286,11 @@ impl Solved<'_> {
     }
 
     /// The load goes on or turns as it did, so that no limit point arises or vanishes here.
-    fn turns(
-        &self,
-        arriving: &Rate,
-        leaving: Option<&Rate>,
-        closing: EventFunction,
-        conditions: &mut Vec<(PathCondition, f64)>,
-    ) {
-        let sides = [(ConditionSide::Arriving, Some(arriving)), (ConditionSide::Leaving, leaving)];
+    fn turns(&self, arriving: Option<&Rate>, leaving: Option<&Rate>, conditions: &mut Vec<(PathCondition, f64)>) {
+        let sides = [(ConditionSide::Arriving, arriving), (ConditionSide::Leaving, leaving)];
         for ((about, rate), sign) in sides.into_iter().zip(self.point.load_signs) {
-            let function = EventFunction::LoadRate { sign };
-            let is_closing = about == ConditionSide::Arriving && matches!(closing, EventFunction::LoadRate { .. });
-            if let Some(rate) = rate.filter(|_| sign != 0.0 && !is_closing) {
-                conditions.push((self.condition(about, function), sign * rate.load));
+            if let Some(rate) = rate.filter(|_| sign != 0.0) {
+                conditions.push((self.condition(about, EventFunction::LoadRate { sign }), sign * rate.load));
             }
         }
     }

@@ -30,6 +30,19 @@ pub(crate) const SHORTEST_CHORD: f64 = 1e-5;
 /// Shortest step of the parameter, relative to the range.
 pub(crate) const SHORTEST_STEP: f64 = 1e-7;
 
+/// Corrections of the parameter up to this, relative to it, are round-off where they no longer become smaller.
+pub(crate) const PARAMETER_ROUND_OFF: f64 = 1e-11;
+
+/// Part of the longest step below which the curve may be close to a point where it turns back, and is sought across.
+pub(crate) const TURNING_STEP: f64 = 1.0 / 16.0;
+
+/// A point in a plane past a turning point has gone back by at least this part of the last step: far enough for a parabola.
+pub(crate) const SMALLEST_RETURN: f64 = 0.5;
+
+/// Part of the longest step below which a refused model ends the curve: what makes a model impossible, such as a stiffness of
+/// zero, is stated to that.
+pub(crate) const MODEL_STEP: f64 = 1.0 / 64.0;
+
 /// Factor by which a step that was accepted grows.
 pub(crate) const STEP_GROWTH: f64 = 2.0;
 

@@ -11,8 +11,11 @@ use std::sync::Arc;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct CurveRow {
-    /// From 0 at the model's own value; then towards larger, then towards smaller values.
+    /// In the order of finding, from 0 at the model's own value; then towards larger, then towards smaller values.
     pub index: u64,
+    /// Place along the curve: 0 at the model's own value, 1, 2 and so on from there towards larger values, -1, -2 and so on
+    /// towards smaller ones. Where the curve turns back the values do, too.
+    pub place: i64,
     /// The value of the parameter.
     pub value: f64,
     /// The kind of the limit point.
@@ -46,7 +49,7 @@ pub struct CurveFound {
     pub curve: CurveSettings,
     /// Dimensions of the space: so many of a node's displacements are translations, the others rotations.
     pub dimension: usize,
-    /// By value; of equal values in the order in which they were found.
+    /// In order along the curve, which turns back in the parameter where two limit points meet.
     pub rows: Vec<CurveRow>,
     /// Null where the curve has not ended yet.
     pub summary: Option<CurveSummary>,
@@ -60,7 +63,7 @@ impl CurveFound {
 
     /// With these points, in any order, and how it ended.
     pub fn with(self, mut rows: Vec<CurveRow>, summary: Option<CurveSummary>) -> Self {
-        rows.sort_by(|a, b| a.value.total_cmp(&b.value).then(a.index.cmp(&b.index)));
+        rows.sort_by_key(|row| row.place);
         Self { rows, summary, ..self }
     }
 }

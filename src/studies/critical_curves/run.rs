@@ -5,7 +5,7 @@ use crate::continuation::critical_curve::{
     CriticalCurve, CurveEnd, CurveFailure, CurvePoint, CurveRange, CurveReport, CurveStart, DirectionEnd,
 };
 use crate::continuation::scene::Scene;
-use crate::model::{Curve, InputError, InputErrors};
+use crate::model::{InputError, InputErrors, ParameterCurve};
 use crate::resources::cancel::CancelFlag;
 use crate::result::increment::Increment;
 use crate::studies::critical_curves::row::{CurveFound, CurveRow, CurveSummary};
@@ -18,7 +18,7 @@ pub type AcceptRow<'a> = &'a mut dyn FnMut(&CurveRow) -> ControlFlow<()>;
 ///
 /// # Errors
 /// Mistakes of the model at its own value; a path without this limit point, or one that cannot be followed.
-pub fn run(curve: &Curve, cancel: &CancelFlag, accept: AcceptRow<'_>) -> Result<CurveFound, InputErrors> {
+pub fn run(curve: &ParameterCurve, cancel: &CancelFlag, accept: AcceptRow<'_>) -> Result<CurveFound, InputErrors> {
     let request_at = |value: f64| {
         let mut request = curve.request(value)?;
         // A point says the displacements and contacts of the whole model, whatever increments are to record.
@@ -42,6 +42,7 @@ pub fn run(curve: &Curve, cancel: &CancelFlag, accept: AcceptRow<'_>) -> Result<
         let Increment { index, stage, load_factor, displacements, contacts, point: kind, .. } = point.increment;
         let row = CurveRow {
             index,
+            place: point.place,
             value: point.value,
             kind: kind.kind,
             stage,
@@ -82,6 +83,8 @@ fn told(end: &DirectionEnd) -> String {
         DirectionEnd::Lost { value, why } => {
             format!("the limit point does not go on past {value}: {why}")
         }
+        DirectionEnd::Closed => "the curve comes back to its start".to_owned(),
+        DirectionEnd::Long { value } => format!("the curve has as many points as one may have, the last at {value}"),
         DirectionEnd::Model { value, errors } => format!("the model is refused at {value}: {errors}"),
     }
 }

@@ -9,7 +9,7 @@ use std::fmt::Write;
 const COLUMNS: [&str; 7] = ["load_factor", "kind", "stage", "codimension_two", "from_path", "largest_error", "event"];
 
 impl CurveFound {
-    /// One line a point, by value: its number, the value under its pointer, the load factor, and the displacements under
+    /// One line a point, in order along the curve: its number, the value under its pointer, the load factor, and the displacements under
     /// the names of their nodes.
     ///
     /// # Errors
@@ -65,7 +65,10 @@ impl CurveFound {
                 row.event.clone().unwrap_or_default(),
             ]);
         }
-        push_columns(&mut text, &cells);
+        let mut columns = String::new();
+        push_columns(&mut columns, &cells);
+        // Most rows have no event in the last column.
+        columns.lines().for_each(|line| text.extend([line.trim_end(), "\n"]));
         let Some(summary) = &self.summary else { return Ok(text) };
         let ends = [("smaller", &summary.ends_below), ("larger", &summary.ends_above)];
         let _ = writeln!(

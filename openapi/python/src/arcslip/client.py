@@ -416,13 +416,13 @@ class Curve(Resource):
     folder = "curves"
 
     def rows(self) -> List[Dict[str, Any]]:
-        """The points found so far, by value: `value`, `load_factor`, `kind`, `displacements`, `event` and so on."""
+        """The points found so far, in order along the curve: `value`, `load_factor`, `kind`, `displacements`, `event` and so on."""
         rows: List[Dict[str, Any]] = []
         after = ""
         while True:
             page = self.client.get(f"{self.address}/rows{after}")
             if not page["rows"]:
-                return sorted(rows, key=lambda row: (row["value"], row["index"]))
+                return sorted(rows, key=lambda row: row["place"])
             rows += page["rows"]
             after = f"?after={page['next_after']}"
 

@@ -167,7 +167,7 @@ pub async fn delete(target: Target<Curve>) -> Result<StatusCode, Problem> {
     target.delete().await
 }
 
-/// The points found so far, by value, as CSV.
+/// The points found so far, in order along the curve, as CSV.
 #[utoipa::path(
     get, path = "/v1/curves/{id}/table.csv", tag = document::CURVES, operation_id = "get_curve_table_csv",
     responses((status = 200, description = "The table; one line a point.", body = String, content_type = "text/csv"))
@@ -176,7 +176,7 @@ pub async fn table_csv(target: Target<Curve>) -> Result<Response, Problem> {
     target.found(FindingsSoFar::csv).await
 }
 
-/// The points found so far, by value, as columns of text.
+/// The points found so far, in order along the curve, as columns of text.
 #[utoipa::path(
     get, path = "/v1/curves/{id}/table.txt", tag = document::CURVES, operation_id = "get_curve_table_txt",
     responses((status = 200, description = "The table, for a reader.", body = String, content_type = "text/plain"))

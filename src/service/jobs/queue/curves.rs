@@ -1,7 +1,7 @@
 //! Curves of limit points as jobs, which the same workers run; of a job's own limit points, or of a model.
 
 use crate::model::request::curve::CurveSettings;
-use crate::model::{Curve, InputError, InputErrors, decode};
+use crate::model::{InputError, InputErrors, ParameterCurve, decode};
 use crate::result::increment::{Increment, PointKind};
 use crate::result::plan::Plan;
 use crate::service::jobs::queue::checks::{CheckContext, Whole};
@@ -112,13 +112,13 @@ pub fn found(curve: JobRecord, lines: &[Line]) -> serde_json::Result<CurveFound>
 }
 
 fn prepare(context: &CheckContext<'_>, request: Vec<u8>) -> Result<Prepared<CurvePlan>, JobsError> {
-    let curve = Curve::read(&request).map_err(|errors| wrong_input(&request, errors, JobsError::Input))?;
+    let curve = ParameterCurve::read(&request).map_err(|errors| wrong_input(&request, errors, JobsError::Input))?;
     let first = curve.request(curve.start).map_err(JobsError::Input)?;
     context.limits.check(&first.model, first.analysis.max_increments).map_err(JobsError::Input)?;
     context.go_on()?;
     let scene = context.solver.plan(&first).map_err(JobsError::Input)?;
     let max_increments = curve.points();
-    let Curve { name, settings, start, step, dimension, .. } = curve;
+    let ParameterCurve { name, settings, start, step, dimension, .. } = curve;
     let plan = CurvePlan { curve: settings, start, step, dimension, points: max_increments, scene };
     let text = String::from_utf8(request).map_err(not_text)?;
     Ok(Prepared { text, name, plan, summary: None, max_increments, explore: None })

@@ -3,7 +3,7 @@
 //! The solve sends its increments over a bounded channel: a slow store makes the solver wait instead of filling the memory. A
 //! panic is caught here and becomes the error of the job.
 
-use crate::model::{Curve, decode};
+use crate::model::{ParameterCurve, decode};
 use crate::resources::budget::{Breach, Budget};
 use crate::resources::cancel::CancelFlag;
 use crate::resources::panics;
@@ -158,7 +158,7 @@ fn curve(
     cancel: &CancelFlag,
     sender: &mpsc::Sender<SolveOutput>,
 ) -> SolveEnd {
-    let curve = match Curve::read(claim.request.as_bytes()) {
+    let curve = match ParameterCurve::read(claim.request.as_bytes()) {
         Ok(curve) => curve,
         Err(errors) => return SolveEnd::Refused(errors),
     };

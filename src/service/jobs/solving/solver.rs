@@ -3,7 +3,7 @@
 use crate::check::judged::{JudgedCheckpoint, JudgedCheckpointError, JudgedIncrement, JudgedPath, JudgedReport, Step};
 use crate::continuation::path::checkpoint::CheckpointError;
 use crate::continuation::scene::Scene;
-use crate::model::{Curve, InputError, InputErrors, JobRequest, StudyRequest};
+use crate::model::{InputError, InputErrors, JobRequest, ParameterCurve, StudyRequest};
 use crate::resources::cancel::CancelFlag;
 use crate::result::plan::Plan;
 use crate::studies::critical_curves::{self, CurveFound, CurveRow};
@@ -98,7 +98,7 @@ pub trait Solver: Send + Sync + 'static {
     /// Follows a curve of limit points, see `critical_curves::run`.
     fn curve(
         &self,
-        curve: &Curve,
+        curve: &ParameterCurve,
         cancel: &CancelFlag,
         accept: &mut dyn FnMut(&CurveRow) -> ControlFlow<()>,
     ) -> Result<CurveFound, InputErrors> {

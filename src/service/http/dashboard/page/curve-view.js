@@ -45,7 +45,7 @@ export class CurveView extends FindingsView {
   }
 
   async drawFindings() {
-    const rows = this.rows.toSorted((a, b) => a.value - b.value || a.index - b.index);
+    const rows = this.rows.toSorted((a, b) => a.place - b.place);
     const parameter = placeWords(this.record.plan.curve.parameter);
     const changes = rows.filter((row) => row.codimension_two);
     this.words.textContent = `The load factor at the limit point. ${changes.length

@@ -1,0 +1,121 @@
+//! Where a curve of critical points turns back in the parameter: two limit points of the path, a load maximum and a load
+//! minimum, meet there and vanish (a cusp of the equilibrium surface).
+//!
+//! Near such a point the state does not follow from the parameter, but the parameter from the state: the critical point is
+//! sought in a plane across the curve, and the parameter is the unknown.
+
+use crate::continuation::critical_curve::contact_history::PointGuess;
+use crate::continuation::critical_curve::curve::{Place, SceneFamily, extrapolated};
+use crate::continuation::critical_curve::solved_history::SolvedHistory;
+use crate::continuation::critical_curve::tolerances::{PARAMETER_ROUND_OFF, SMALLEST_RETURN};
+use crate::continuation::scene::Scene;
+use crate::mechanics::equations::closing_equation::HyperplaneEquation;
+use crate::mechanics::problem::state::State;
+use crate::result::increment::PointKind;
+use crate::step::corrector::cost_counters::Work;
+
+/// Iterations for the parameter at which the point in a plane is critical.
+const MOST_ITERATIONS: usize = 20;
+/// First change of the parameter there, in units of the last step of the curve.
+const FIRST_DIFFERENCE: f64 = 0.05;
+/// Planes that are tried past the last point, each twice as far as the one before.
+const MOST_PLANES: usize = 12;
+/// Parabolas through the last three points, whose top is the turning point.
+const MOST_PARABOLAS: usize = 6;
+
+/// A turning point, and a point of the curve past it.
+pub(super) struct Turn {
+    pub at: (Scene, SolvedHistory),
+    pub past: (Scene, SolvedHistory),
+}
+
+/// The turning point past the last point of a curve that goes in this sense of the parameter, if there is one near by.
+pub(super) fn turn(family: SceneFamily<'_>, place: &Place, sense: f64, work: &mut Work) -> Option<Turn> {
+    let before = place.before.as_ref()?;
+    if place.history.kind != PointKind::SmoothLimit || place.here.parameter == before.parameter {
+        return None;
+    }
+    let (first, last) = (before.parameter, place.here.parameter);
+    let mut planes = 0..MOST_PLANES;
+    let (far, past) = planes.find_map(|power| {
+        let far = f64::from(1_u32 << power);
+        // A plane in which there is no such point may lie too close to the last one.
+        let past = in_plane(family, place, far, work)?;
+        let is_back = sense * (past.1.parameter - last) < -SMALLEST_RETURN * (last - first).abs();
+        is_back.then_some((far, past))
+    })?;
+    // In units of the last chord.
+    let mut known = [(-1.0, first), (0.0, last), (far, past.1.parameter)];
+    let mut at = None;
+    for _ in 0..MOST_PARABOLAS {
+        let top = top_of_parabola(&known).filter(|top| *top > 0.0)?;
+        let found = in_plane(family, place, top, work)?;
+        let (nearest, width) = known
+            .iter()
+            .enumerate()
+            .map(|(index, (far, _))| (index, (far - top).abs()))
+            .min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let farthest =
+            known.iter().enumerate().max_by(|(_, a), (_, b)| (a.0 - top).abs().total_cmp(&(b.0 - top).abs()))?.0;
+        known[if nearest == farthest { 0 } else { farthest }] = (top, found.1.parameter);
+        at = Some(found);
+        if width <= 1e-6 {
+            break;
+        }
+    }
+    let at = at?;
+    let is_ahead = sense * (at.1.parameter - last) >= 0.0;
+    is_ahead.then_some(Turn { at, past })
+}
+
+/// The critical point in the plane across the last chord, at so many lengths of it from the last point.
+fn in_plane(family: SceneFamily<'_>, place: &Place, far: f64, work: &mut Work) -> Option<(Scene, SolvedHistory)> {
+    let before = place.before.as_ref()?;
+    let stage = place.history.points.last()?.stage;
+    let width = place.here.parameter - before.parameter;
+    let mut solve = |parameter: f64| {
+        let scene = family(parameter).ok()?;
+        let mut guesses = extrapolated(place, &scene, parameter);
+        let from = place.here.scales.express(place.here.critical(), stage, &scene);
+        let chord = before.scales.express(before.critical(), stage, &scene).chord(&from);
+        let length = chord.size();
+        let normal = chord.clone().normalised()?;
+        let guess: &mut PointGuess = guesses.last_mut()?;
+        let state: State = from.advanced(&chord, far);
+        *guess = PointGuess { state, from: from.clone(), ..guess.clone() };
+        let plane = HyperplaneEquation { from: &from, rate: &normal, step: far * length };
+        let solved = place.history.solve_up_to(&scene, parameter, &guesses, Some(plane), work)?;
+        Some((scene, solved))
+    };
+    let mut here = solve(place.here.parameter)?;
+    let mut next = solve(place.here.parameter + FIRST_DIFFERENCE * width)?;
+    let mut least = f64::INFINITY;
+    for _ in 0..MOST_ITERATIONS {
+        let slope = (next.1.off_event - here.1.off_event) / (next.1.parameter - here.1.parameter);
+        let correction = -next.1.off_event / slope;
+        let round_off = PARAMETER_ROUND_OFF * next.1.parameter.abs().max(width.abs());
+        // Where corrections no longer become smaller they are round-off.
+        if next.1.off_event == 0.0 || correction.abs() <= round_off && correction.abs() >= 0.5 * least {
+            return Some(next);
+        }
+        if !correction.is_finite() {
+            return (least <= round_off).then_some(next);
+        }
+        least = least.min(correction.abs());
+        let found = solve(next.1.parameter + correction)?;
+        if found.1.parameter == next.1.parameter {
+            return Some(found);
+        }
+        here = std::mem::replace(&mut next, found);
+    }
+    None
+}
+
+/// Where the parabola through three points has its top; `None` where they lie on a line.
+fn top_of_parabola(points: &[(f64, f64); 3]) -> Option<f64> {
+    let [(a, fa), (b, fb), (c, fc)] = *points;
+    let (first, second) = ((fb - fa) / (b - a), (fc - fb) / (c - b));
+    let curvature = (second - first) / (c - a);
+    let top = 0.5 * (a + b) - 0.5 * first / curvature;
+    top.is_finite().then_some(top)
+}
