@@ -271,7 +271,7 @@ pub mod manual {
         library: "The library",
         http: "The HTTP interface",
         python: "Python",
-        studies: "Sweeps, studies, explorations",
+        studies: "Sweeps, curves, studies, explorations",
         operation: "Operation",
         many_machines: "Many machines",
         performance: "Performance",

@@ -84,6 +84,8 @@ pub(super) struct PointGuess {
 pub(super) struct ContactHistory {
     pub points: Vec<HistoryPoint>,
     pub kind: PointKind,
+    /// For each contact whether it has friction in the model of the path: without, its slips have no sense that friction opposes.
+    pub frictional: Vec<bool>,
     pub force_scale: f64,
 }
 
@@ -131,7 +133,14 @@ impl ContactHistory {
         // Where a stage ends at its limit point, the point says so by its event.
         let is_smooth = matches!(critical.event, Some(EventFunction::LoadRate { .. }));
         let kind = if is_smooth { PointKind::SmoothLimit } else { critical.kind };
-        Ok((Self { points, kind, force_scale: critical.force_scale }, guesses))
+        let frictional = scene.contacts.iter().map(|contact| contact.tangents() > 0).collect();
+        Ok((Self { points, kind, frictional, force_scale: critical.force_scale }, guesses))
+    }
+
+    /// Whether contacts have friction in this model that had none in that of the path: the path may slip otherwise there.
+    pub fn gets_friction(&self, scene: &Scene) -> bool {
+        let pairs = self.frictional.iter().zip(&scene.contacts);
+        pairs.into_iter().any(|(had, contact)| !had && contact.tangents() > 0)
     }
 }
 

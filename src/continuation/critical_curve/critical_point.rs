@@ -82,6 +82,11 @@ pub(super) fn point(
     }
 }
 
+/// A value as sentences tell it, without the round-off of its last digits.
+pub(crate) fn in_words(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
+}
+
 /// The kind of a limit point in words.
 pub(super) fn kind_name(kind: PointKind) -> &'static str {
     match kind {

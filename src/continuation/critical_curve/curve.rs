@@ -3,27 +3,33 @@
 use crate::algebra::scalar_root::find_root;
 use crate::continuation::critical_curve::contact_history::{ContactHistory, PointGuess};
 use crate::continuation::critical_curve::critical_point::{self, CurvePoint, PointNote};
-use crate::continuation::critical_curve::solved_history::{PathCondition, SolvedHistory};
+use crate::continuation::critical_curve::solved_history::{PathCondition, SolvedHistory, StateScales};
 use crate::continuation::critical_curve::tolerances::{
-    LARGEST_DEVIATION, MODEL_STEP, PASSED, PAST_CHANGE, SAME_POINT, SHORTEST_CHORD, SHORTEST_STEP, STEP_GROWTH,
-    TURNING_STEP,
+    CLEAR_OF_CHANGE, FOUND_ZERO, LARGEST_DEVIATION, MODEL_STEP, ON_PATH, PASSED, PAST_CHANGE, SAME_POINT,
+    SHORTEST_CHORD, SHORTEST_STEP, STEP_GROWTH, TURNING_STEP,
 };
 use crate::continuation::critical_curve::traced_history::{self, CurveRefusal, CurveStart};
 use crate::continuation::critical_curve::turning_point::{self, Turn};
+use crate::continuation::path_state::passed_points::PassedPoint;
 use crate::continuation::scene::Scene;
 use crate::mechanics::problem::state::State;
 use crate::model::InputErrors;
 use crate::model::input::limits::MAX_CURVE_POINTS;
 use crate::resources::cancel::CancelFlag;
 use crate::step::corrector::cost_counters::Work;
+use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
 /// Paths that are traced past a change are at most this many times as long as the first one, in increments ...
 const MOST_PATH_FACTOR: u64 = 8;
 /// ... and at least this long.
 const LEAST_PATH: u64 = 200;
+/// Changes that are found in one step, each before the other, until one has no other before.
+const MOST_CHANGES: usize = 6;
 /// Critical points of such a path that are tried.
 const MOST_CANDIDATES: usize = 4;
+/// Points that are kept to be compared with a path.
+const MOST_KEPT: usize = 256;
 /// Most points of a curve: five times as many as the range may have steps, for what comes in addition.
 const MOST_POINTS: u64 = 5 * MAX_CURVE_POINTS;
 
@@ -51,6 +57,15 @@ pub enum DirectionEnd {
         value: f64,
         /// What happens there, in words.
         why: String,
+    },
+    /// The curve ended so, but points of it are on no path: one that the equations between its changes do not see came before.
+    OffPath {
+        /// The value of the first such point, as far as points were kept.
+        value: f64,
+        /// The last value before it at which the point is on a path; `None` where none is known.
+        last: Option<f64>,
+        /// How the curve ended.
+        end: Box<DirectionEnd>,
     },
     /// The curve comes back to its start.
     Closed,
@@ -114,6 +129,8 @@ pub struct CriticalCurve<'a> {
     paths: u64,
     /// Most increments of a path that is traced past a change.
     longest_path: u64,
+    /// The last points of the direction that is followed.
+    passed: VecDeque<PassedLimit>,
 }
 
 /// Why a direction, or the curve, goes no further.
@@ -128,6 +145,25 @@ pub(super) struct Place {
     pub history: ContactHistory,
     pub here: SolvedHistory,
     pub before: Option<SolvedHistory>,
+}
+
+/// A point of the curve that may be compared with a path.
+#[derive(Clone)]
+struct PassedLimit {
+    parameter: f64,
+    stage: usize,
+    state: State,
+    scales: StateScales,
+    /// No change of the curve lies close by.
+    is_clear: bool,
+}
+
+/// What a path has past a change.
+struct FoundOnPath {
+    /// The curve at its critical point, if one continues it.
+    place: Option<Place>,
+    /// Whether it has any in this stage.
+    has_limits: bool,
 }
 
 /// The curve as it is followed in one direction.
@@ -156,7 +192,18 @@ impl<'a> CriticalCurve<'a> {
     /// A curve that has not begun.
     pub fn new(family: SceneFamily<'a>, range: CurveRange, cancel: CancelFlag) -> Self {
         let (work, longest_path) = (Work::default(), LEAST_PATH);
-        Self { family, range, cancel, work, points: 0, place: 0, sense: 1.0, paths: 0, longest_path }
+        Self {
+            family,
+            range,
+            cancel,
+            work,
+            points: 0,
+            place: 0,
+            sense: 1.0,
+            paths: 0,
+            longest_path,
+            passed: VecDeque::new(),
+        }
     }
 
     /// Follows the curve from a critical point of the path to larger, then to smaller values.
@@ -181,8 +228,9 @@ impl<'a> CriticalCurve<'a> {
                     ends.push(DirectionEnd::Closed);
                     break;
                 }
+                self.passed.clear();
                 match self.towards(begin.clone(), sense, accept) {
-                    Stopped::Ended(direction) => ends.push(direction),
+                    Stopped::Ended(direction) => ends.push(self.checked(direction)),
                     Stopped::Cancelled => {
                         end = Some(Stopped::Cancelled);
                         break;
@@ -196,6 +244,44 @@ impl<'a> CriticalCurve<'a> {
         };
         let (points, paths, newton_iterations) = (self.points, self.paths, self.work.newton_iterations);
         Ok(CurveReport { end, points, paths, newton_iterations })
+    }
+
+    /// The end of a direction, after one of its last points has been compared with a path of its own: between two changes of
+    /// contact the path is not looked at. Where they differ, the first point that is on no path is sought by bisection.
+    fn checked(&mut self, end: DirectionEnd) -> DirectionEnd {
+        // Close to changes two limit points, or a limit point and a change, are too close for the steps of a path.
+        let lost = match &end {
+            DirectionEnd::Lost { value, .. } | DirectionEnd::Model { value, .. } => Some(*value),
+            _ => None,
+        };
+        let close = CLEAR_OF_CHANGE * self.range.step;
+        let is_apart = |one: &&PassedLimit| lost.is_none_or(|lost| (one.parameter - lost).abs() >= close);
+        let clear: Vec<PassedLimit> = self.passed.iter().filter(|one| one.is_clear).filter(is_apart).cloned().collect();
+        let Some(last) = clear.last() else { return end };
+        if self.is_on_path(last) {
+            return end;
+        }
+        let (mut on, mut off) = (None, clear.len() - 1);
+        while on.map_or(0, |on: usize| on + 1) < off {
+            let middle = (on.map_or(0, |on| on + 1) + off) / 2;
+            if self.is_on_path(&clear[middle]) { on = Some(middle) } else { off = middle }
+        }
+        DirectionEnd::OffPath {
+            value: clear[off].parameter,
+            last: on.map(|on| clear[on].parameter),
+            end: Box::new(end),
+        }
+    }
+
+    /// Whether a path traced at the value of a point has this limit point.
+    fn is_on_path(&mut self, point: &PassedLimit) -> bool {
+        let Ok(scene) = (self.family)(point.parameter) else { return true };
+        self.paths += 1;
+        let most = self.longest_path.max(MOST_PATH_FACTOR * LEAST_PATH);
+        let state = point.scales.express(&point.state, point.stage, &scene);
+        let limits = traced_history::near(&scene, &state, point.stage, most, &self.cancel);
+        let nearest = limits.first().and_then(|points| points.last());
+        nearest.is_some_and(|found| found.state.distance(&state) <= ON_PATH * (1.0 + size_of(&state)))
     }
 
     /// Follows the curve in one sense of the parameter, to an end of the range.
@@ -234,6 +320,10 @@ impl<'a> CriticalCurve<'a> {
             }
             Err(_) => return walk.shorten(),
         };
+        if walk.place.history.gets_friction(&scene) {
+            let from = walk.place.here.clone();
+            return self.go_on_past(walk, &from, accept, || "friction begins there".to_owned());
+        }
         let Some(solved) = self.near(&walk.place, &scene, value) else {
             if walk.step <= TURNING_STEP * self.range.step
                 && let Some(turn) = turning_point::turn(self.family, &walk.place, walk.sense, &mut self.work)
@@ -303,7 +393,8 @@ impl<'a> CriticalCurve<'a> {
         (off <= most).then_some(solved)
     }
 
-    /// The first value at which one of these conditions ends, between the last point and a value past it.
+    /// The first value at which one of these conditions ends, between the last point and a value past it; `None` where none of
+    /// them is found to be zero, as at a pole.
     fn change_before(
         &mut self,
         place: &Place,
@@ -311,6 +402,31 @@ impl<'a> CriticalCurve<'a> {
         past: &SolvedHistory,
         broken: &[PathCondition],
     ) -> Option<(Scene, SolvedHistory, PathCondition)> {
+        let (mut value, mut past, mut broken) = (value, past.clone(), broken.to_vec());
+        for _ in 0..MOST_CHANGES {
+            let (scene, solved) = self.root(place, value, &past, &broken)?;
+            let (condition, off) = solved.least_of(&broken)?;
+            if off.abs() > FOUND_ZERO {
+                return None;
+            }
+            let before = solved.broken();
+            if before.is_empty() {
+                return Some((scene, solved, condition));
+            }
+            // Another condition has ended before.
+            (value, past, broken) = (solved.parameter, solved, before);
+        }
+        None
+    }
+
+    /// A value at which the least of these conditions is zero, between the last point and a value past it.
+    fn root(
+        &mut self,
+        place: &Place,
+        value: f64,
+        past: &SolvedHistory,
+        broken: &[PathCondition],
+    ) -> Option<(Scene, SolvedHistory)> {
         let (_, at_value) = past.least_of(broken)?;
         let (_, at_here) = place.here.least_of(broken)?;
         let mut solved_at = |parameter: f64| {
@@ -318,18 +434,16 @@ impl<'a> CriticalCurve<'a> {
             let solved = self.near(place, &scene, parameter)?;
             Some((scene, solved))
         };
-        let root = if at_here <= 0.0 {
-            place.here.parameter
-        } else {
-            let least = |parameter: f64| Some(solved_at(parameter)?.1.least_of(broken)?.1);
-            find_root(least, (place.here.parameter, at_here), (value, at_value), 0.1 * PASSED * PASSED)?
-        };
-        let (scene, solved) = solved_at(root)?;
-        let (condition, _) = solved.least_of(broken)?;
-        Some((scene, solved, condition))
+        if at_here <= 0.0 {
+            return solved_at(place.here.parameter);
+        }
+        let least = |parameter: f64| Some(solved_at(parameter)?.1.least_of(broken)?.1);
+        let root = find_root(least, (place.here.parameter, at_here), (value, at_value), 0.1 * PASSED * PASSED)?;
+        solved_at(root)
     }
 
-    /// Goes on past a change, by a path traced there: its critical point must come from the same state.
+    /// Goes on past a change, by a path traced there: its critical point must come from the same state. Where another change
+    /// comes in between, the path is traced closer to this one.
     fn go_on_past(
         &mut self,
         walk: &mut Walk,
@@ -337,56 +451,82 @@ impl<'a> CriticalCurve<'a> {
         accept: AcceptPoint<'_>,
         why: impl FnOnce() -> String,
     ) -> ControlFlow<Stopped> {
-        let lost = |value: f64, why: String| ControlFlow::Break(Stopped::Ended(DirectionEnd::Lost { value, why }));
-        let value = stepped(change.parameter, walk.sense * PAST_CHANGE * self.range.step, walk.target(&self.range));
-        let (Ok(scene), Ok(scene_at_change)) = ((self.family)(value), (self.family)(change.parameter)) else {
-            return lost(change.parameter, why());
-        };
-        let stage = walk.place.history.points.last().map_or(0, |point| point.stage);
-        let expected = change.scales.express(change.critical(), stage, &scene);
-        self.paths += 1;
-        let candidates = traced_history::near(&scene, &expected, stage, self.longest_path, &self.cancel);
-        if self.cancel.is_cancelled() {
-            return ControlFlow::Break(Stopped::Cancelled);
-        }
-        self.longest_path = self.longest_path.max(
-            candidates
-                .iter()
-                .take(1)
-                .filter_map(|points| points.last())
-                .map(|point| MOST_PATH_FACTOR * point.index)
-                .fold(0, u64::max),
-        );
-        for passed in candidates.iter().take(MOST_CANDIDATES) {
-            let Ok((history, guesses)) = ContactHistory::of(&scene, passed) else { continue };
-            let Some(here) = history.solve(&scene, value, &guesses, &mut self.work) else { continue };
-            if !here.broken().is_empty() {
-                continue;
+        let mut has_limits = false;
+        let mut tried = change.parameter;
+        for part in PAST_CHANGE {
+            let value = stepped(change.parameter, walk.sense * part * self.range.step, walk.target(&self.range));
+            let Ok(scene) = (self.family)(value) else { continue };
+            let is_last = part == PAST_CHANGE[PAST_CHANGE.len() - 1];
+            let found = self.from_path(&walk.place, change, &scene, value, is_last);
+            if self.cancel.is_cancelled() {
+                return ControlFlow::Break(Stopped::Cancelled);
             }
-            let begin = Place { history, here, before: None };
-            let Some(back) = self.back_to(&begin, &scene_at_change, change.parameter) else { continue };
-            let at_change = back.scales.express(back.critical(), stage, &scene_at_change);
-            let expected = change.scales.express(change.critical(), stage, &scene_at_change);
-            if at_change.distance(&expected) > SAME_POINT * (1.0 + size_of(&expected)) {
-                continue;
+            if let Some(place) = found.place {
+                walk.place = place;
+                let note = PointNote { event: None, codimension_two: false, from_path: true };
+                return flow(self.emit(&scene, &walk.place, note, accept));
             }
-            walk.place = Place { before: Some(back), ..begin };
-            let note = PointNote { event: None, codimension_two: false, from_path: true };
-            return flow(self.emit(&scene, &walk.place, note, accept));
+            (has_limits, tried) = (found.has_limits, value);
         }
-        lost(change.parameter, why())
+        let what = if has_limits { "has limit points, and none that comes from there" } else { "has no limit point" };
+        let why = format!("{}; the path at {} {what}", why(), critical_point::in_words(tried));
+        ControlFlow::Break(Stopped::Ended(DirectionEnd::Lost { value: change.parameter, why }))
     }
 
-    /// The critical point of a history at the change that it comes from, by a few steps.
-    fn back_to(&mut self, begin: &Place, scene: &Scene, value: f64) -> Option<SolvedHistory> {
+    /// The critical point that continues the curve, on a path at a value past a change. Unless `any`, no other change lies
+    /// between them.
+    fn from_path(
+        &mut self,
+        place: &Place,
+        change: &SolvedHistory,
+        scene: &Scene,
+        value: f64,
+        any: bool,
+    ) -> FoundOnPath {
+        let stage = place.history.points.last().map_or(0, |point| point.stage);
+        let expected = change.scales.express(change.critical(), stage, scene);
+        self.paths += 1;
+        let candidates = traced_history::near(scene, &expected, stage, self.longest_path, &self.cancel);
+        if let Some(nearest) = candidates.first().and_then(|points| points.last()) {
+            self.longest_path = self.longest_path.max(MOST_PATH_FACTOR * nearest.index);
+        }
+        let mut continues = |passed: &Vec<PassedPoint>| {
+            let (history, guesses) = ContactHistory::of(scene, passed).ok()?;
+            let here = history.solve(scene, value, &guesses, &mut self.work)?;
+            let begin = Place { history, here, before: None };
+            if !begin.here.broken().is_empty() {
+                return None;
+            }
+            let (scene_at_change, back) = self.back_to(&begin, change.parameter, any)?;
+            let at_change = back.scales.express(back.critical(), stage, &scene_at_change);
+            let expected = change.scales.express(change.critical(), stage, &scene_at_change);
+            let is_same = at_change.distance(&expected) <= SAME_POINT * (1.0 + size_of(&expected));
+            is_same.then_some(Place { before: Some(back), ..begin })
+        };
+        let place = candidates.iter().take(MOST_CANDIDATES).find_map(&mut continues);
+        FoundOnPath { place, has_limits: !candidates.is_empty() }
+    }
+
+    /// The critical point of a history at the change that it comes from, by a few steps, with the scene there; unless `any`,
+    /// the conditions of its path hold on the way.
+    fn back_to(&mut self, begin: &Place, value: f64, any: bool) -> Option<(Scene, SolvedHistory)> {
         let mut place = begin.clone();
-        for part in [0.5, 0.75, 0.9375] {
-            let parameter = begin.here.parameter + part * (value - begin.here.parameter);
+        for part in [0.5, 0.75, 0.9375, 1.0] {
+            // The last value is the given one without round-off.
+            let parameter =
+                if part < 1.0 { begin.here.parameter + part * (value - begin.here.parameter) } else { value };
             let scene = (self.family)(parameter).ok()?;
-            let next = self.near(&place, &scene, parameter)?;
+            let guesses = extrapolated(&place, &scene, parameter);
+            let next = place.history.solve(&scene, parameter, &guesses, &mut self.work)?;
+            if part == 1.0 {
+                return Some((scene, next));
+            }
+            if !any && !next.broken().is_empty() {
+                return None;
+            }
             place.before = Some(std::mem::replace(&mut place.here, next));
         }
-        self.near(&place, scene, value)
+        None
     }
 
     /// Makes a point the last one of the curve.
@@ -402,6 +542,7 @@ impl<'a> CriticalCurve<'a> {
     }
 
     fn emit(&mut self, scene: &Scene, place: &Place, note: PointNote, accept: AcceptPoint<'_>) -> Result<(), Stopped> {
+        self.pass(place, &note);
         let mut point = critical_point::point(scene, &place.history, &place.here, note, self.work);
         point.increment.index = self.points;
         point.place = self.place;

@@ -37,7 +37,7 @@ pub(crate) const PARAMETER_ROUND_OFF: f64 = 1e-11;
 pub(crate) const TURNING_STEP: f64 = 1.0 / 16.0;
 
 /// A point in a plane past a turning point has gone back by at least this part of the last step: far enough for a parabola.
-pub(crate) const SMALLEST_RETURN: f64 = 0.5;
+pub(crate) const SMALLEST_RETURN: f64 = 0.05;
 
 /// Part of the longest step below which a refused model ends the curve: what makes a model impossible, such as a stiffness of
 /// zero, is stated to that.
@@ -46,9 +46,20 @@ pub(crate) const MODEL_STEP: f64 = 1.0 / 64.0;
 /// Factor by which a step that was accepted grows.
 pub(crate) const STEP_GROWTH: f64 = 2.0;
 
-/// Where the kind of the critical points changes, the path is traced anew at this part of the step past the change: close to
-/// it the change of contact and the limit point are too close to each other to be told apart.
-pub(crate) const PAST_CHANGE: f64 = 0.25;
+/// Where the kind of the critical points changes, the path is traced anew at such a part of the step past the change: close to
+/// it the change of contact and the limit point are too close to each other to be told apart, far from it another change may
+/// lie in between.
+pub(crate) const PAST_CHANGE: [f64; 3] = [0.25, 1.0 / 32.0, 1.0 / 256.0];
+
+/// A condition that has been located has at most this value, relative to its scale; a larger one is that of a pole.
+pub(crate) const FOUND_ZERO: f64 = 1e-7;
+
+/// Points closer to a change than this part of the longest step are not compared with paths.
+pub(crate) const CLEAR_OF_CHANGE: f64 = 0.2;
+
+/// A point is on a path if a limit point of the path is as near as this, relative to the size of the state. Both are exact to
+/// some 1e-10; another limit point is rarely as near.
+pub(crate) const ON_PATH: f64 = 1e-6;
 
 /// Points of two histories coincide within this (dimensionless displacement and load).
 pub(crate) const SAME_POINT: f64 = 1e-7;

@@ -1,6 +1,7 @@
 //! Follows a curve of limit points and judges its points.
 
 use crate::check::measure::Judge;
+use crate::continuation::critical_curve::critical_point::in_words;
 use crate::continuation::critical_curve::{
     CriticalCurve, CurveEnd, CurveFailure, CurvePoint, CurveRange, CurveReport, CurveStart, DirectionEnd,
 };
@@ -81,10 +82,21 @@ fn told(end: &DirectionEnd) -> String {
     match end {
         DirectionEnd::Range => "the end of the range is reached".to_owned(),
         DirectionEnd::Lost { value, why } => {
-            format!("the limit point does not go on past {value}: {why}")
+            format!("the limit point does not go on past {}: {why}", in_words(*value))
+        }
+        DirectionEnd::OffPath { value, last, end } => {
+            let since = last.map_or_else(String::new, |last| format!("between {} and ", in_words(last)));
+            format!(
+                "{}; a path of its own at {} has no such limit point: {since}there contacts change between the points of \
+                 the curve, and its points past that are on no path; start it anew from a value past it",
+                told(end),
+                in_words(*value)
+            )
         }
         DirectionEnd::Closed => "the curve comes back to its start".to_owned(),
-        DirectionEnd::Long { value } => format!("the curve has as many points as one may have, the last at {value}"),
-        DirectionEnd::Model { value, errors } => format!("the model is refused at {value}: {errors}"),
+        DirectionEnd::Long { value } => {
+            format!("the curve has as many points as one may have, the last at {}", in_words(*value))
+        }
+        DirectionEnd::Model { value, errors } => format!("the model is refused at {}: {errors}", in_words(*value)),
     }
 }

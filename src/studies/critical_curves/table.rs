@@ -77,7 +77,7 @@ impl CurveFound {
             summary.paths
         );
         for (side, end) in ends {
-            let _ = writeln!(text, "towards {side} values: {}", end.as_deref().unwrap_or("cancelled"));
+            let _ = writeln!(text, "from the start towards {side} values: {}", end.as_deref().unwrap_or("cancelled"));
         }
         Ok(text)
     }

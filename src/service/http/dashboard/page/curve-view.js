@@ -40,7 +40,7 @@ export class CurveView extends FindingsView {
 
   remark() {
     const { error, report } = this.record;
-    const ends = report?.complete ? ` Towards smaller values: ${report.ends_below}. Towards larger values: ${report.ends_above}.` : "";
+    const ends = report?.complete ? ` From the start towards smaller values: ${report.ends_below}. Towards larger values: ${report.ends_above}.` : "";
     return ` ${error ?? ""}${ends}`;
   }
 
