@@ -12,7 +12,7 @@ the exit status is 1 if there are mistakes, and all of them are listed. The mark
     sh shown       is not run
     text           the output of the `sh` block before it
     text shown     is not compared
-    json model     a request that the program accepts: `check`, or `sweep` or `study` where it has that member
+    json model     a request that the program accepts: `check`, or `sweep`, `study` or `continue` where it has their member
     json model F   that, too; the commands find it as the file F
     json, toml, python    can be read
     javascript     is not checked
@@ -237,7 +237,8 @@ def check_data(chapter, program):
             chapter.mistake(block.line, f"cannot be read: {error}")
             continue
         if MODEL.match(block.mark):
-            command = next((name for name in ("sweep", "study") if name in data), "check")
+            commands = {"sweep": "sweep", "study": "study", "curve": "continue"}
+            command = next((command for member, command in commands.items() if member in data), "check")
             checked = subprocess.run([program, command, "-"], input=block.text, text=True, capture_output=True)
             if checked.returncode != 0:
                 chapter.mistake(block.line, f"is no model:\n{checked.stderr or checked.stdout}")

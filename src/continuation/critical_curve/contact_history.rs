@@ -52,7 +52,7 @@ pub(super) struct HistoryPoint {
     pub leaving_modes: Vec<Mode>,
     /// Whether contacts change here.
     pub changes: bool,
-    pub closing: Closing,
+    pub closing: PointClosing,
     /// Signs of the load rate with which the path arrives and leaves; 0 where it is zero, or the path does not change.
     pub load_signs: [f64; 2],
     /// Event functions of the mode after the point that are zero at it.
@@ -61,7 +61,7 @@ pub(super) struct HistoryPoint {
 
 /// What is zero at a point of the history.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Closing {
+pub(super) enum PointClosing {
     Event(EventFunction),
     /// A bound of the stage, by its place among them.
     StageEnd(usize),
@@ -165,15 +165,15 @@ fn touching(scene: &Scene, point: &PassedPoint, reached: &[f64]) -> Vec<EventFun
     of_mode.into_iter().filter(is_zero).collect()
 }
 
-fn closing(scene: &Scene, point: &PassedPoint) -> Result<Closing, HistoryRefusal> {
+fn closing(scene: &Scene, point: &PassedPoint) -> Result<PointClosing, HistoryRefusal> {
     let stage = &scene.stages[point.stage];
     match point.event {
-        _ if point.kind == PointKind::Start => Ok(Closing::StageBegin),
+        _ if point.kind == PointKind::Start => Ok(PointClosing::StageBegin),
         Some(EventFunction::End(end)) => {
             let place = stage.ends.iter().position(|other| *other == end);
-            place.map(Closing::StageEnd).ok_or_else(|| HistoryRefusal::CountedEnd(stage.name.to_string()))
+            place.map(PointClosing::StageEnd).ok_or_else(|| HistoryRefusal::CountedEnd(stage.name.to_string()))
         }
-        Some(event) => Ok(Closing::Event(event)),
+        Some(event) => Ok(PointClosing::Event(event)),
         None if point.stage_ends => Err(HistoryRefusal::CountedEnd(stage.name.to_string())),
         None => Err(HistoryRefusal::Joined),
     }

@@ -1,6 +1,6 @@
 //! A point of a curve of critical points in the user's units and names.
 
-use crate::continuation::critical_curve::contact_history::{Closing, ContactHistory, HistoryPoint};
+use crate::continuation::critical_curve::contact_history::{ContactHistory, HistoryPoint, PointClosing};
 use crate::continuation::critical_curve::solved_history::{ConditionSide, PathCondition, SolvedHistory, scene_loading};
 use crate::continuation::path_state::resumable_state::constant_load;
 use crate::continuation::path_state::row_conversion::{self, RowSource};
@@ -103,10 +103,10 @@ pub(super) fn describe(scene: &Scene, history: &ContactHistory, condition: &Path
     if condition.point + 1 == history.points.len() {
         return format!("{what} at the {kind}");
     }
-    if point.closing == Closing::StageBegin {
+    if point.closing == PointClosing::StageBegin {
         return format!("{what} where stage \"{}\" begins", scene.stages[point.stage].name);
     }
-    let changes = |points: &[HistoryPoint]| points.iter().filter(|one| one.closing != Closing::StageBegin).count();
+    let changes = |points: &[HistoryPoint]| points.iter().filter(|one| one.closing != PointClosing::StageBegin).count();
     let (count, all) = (changes(&history.points[..=condition.point]), changes(&history.points) - 1);
     format!("{what} at change {count} of the {all} by which the path comes to the {kind}")
 }

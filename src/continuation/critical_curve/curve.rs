@@ -9,7 +9,7 @@ use crate::continuation::critical_curve::tolerances::{
     SHORTEST_CHORD, SHORTEST_STEP, STEP_GROWTH, TURNING_STEP,
 };
 use crate::continuation::critical_curve::traced_history::{self, CurveRefusal, CurveStart};
-use crate::continuation::critical_curve::turning_point::{self, Turn};
+use crate::continuation::critical_curve::turning_point::{self, TurningPoint};
 use crate::continuation::path_state::passed_points::PassedPoint;
 use crate::continuation::scene::Scene;
 use crate::mechanics::problem::state::State;
@@ -131,6 +131,8 @@ pub struct CriticalCurve<'a> {
     longest_path: u64,
     /// The last points of the direction that is followed.
     passed: VecDeque<PassedLimit>,
+    /// The last value at which the curve changed.
+    change: Option<f64>,
 }
 
 /// Why a direction, or the curve, goes no further.
@@ -141,7 +143,7 @@ enum Stopped {
 
 /// The curve at its last point.
 #[derive(Clone)]
-pub(super) struct Place {
+pub(super) struct CurvePosition {
     pub history: ContactHistory,
     pub here: SolvedHistory,
     pub before: Option<SolvedHistory>,
@@ -161,14 +163,14 @@ struct PassedLimit {
 /// What a path has past a change.
 struct FoundOnPath {
     /// The curve at its critical point, if one continues it.
-    place: Option<Place>,
+    place: Option<CurvePosition>,
     /// Whether it has any in this stage.
     has_limits: bool,
 }
 
 /// The curve as it is followed in one direction.
 struct Walk {
-    place: Place,
+    place: CurvePosition,
     /// Sense of the parameter, 1 or -1.
     sense: f64,
     /// The next step of the parameter.
@@ -203,6 +205,7 @@ impl<'a> CriticalCurve<'a> {
             paths: 0,
             longest_path,
             passed: VecDeque::new(),
+            change: None,
         }
     }
 
@@ -214,9 +217,9 @@ impl<'a> CriticalCurve<'a> {
         let scene = (self.family)(self.range.start).map_err(CurveFailure::Model)?;
         self.paths += 1;
         let (history, guesses) = traced_history::start(&scene, start, &self.cancel)?;
-        let solved = history.solve(&scene, self.range.start, &guesses, &mut self.work);
+        let solved = SolvedHistory::of(&history, &scene, self.range.start, &guesses, &mut self.work);
         let here = solved.ok_or(CurveRefusal::NotSolved)?;
-        let begin = Place { history, here, before: None };
+        let begin = CurvePosition { history, here, before: None };
         let mut ends = Vec::new();
         let note = PointNote { event: None, codimension_two: false, from_path: true };
         let mut end = self.emit(&scene, &begin, note, accept).err();
@@ -229,6 +232,7 @@ impl<'a> CriticalCurve<'a> {
                     break;
                 }
                 self.passed.clear();
+                self.change = None;
                 match self.towards(begin.clone(), sense, accept) {
                     Stopped::Ended(direction) => ends.push(self.checked(direction)),
                     Stopped::Cancelled => {
@@ -285,7 +289,7 @@ impl<'a> CriticalCurve<'a> {
     }
 
     /// Follows the curve in one sense of the parameter, to an end of the range.
-    fn towards(&mut self, begin: Place, sense: f64, accept: AcceptPoint<'_>) -> Stopped {
+    fn towards(&mut self, begin: CurvePosition, sense: f64, accept: AcceptPoint<'_>) -> Stopped {
         let first = begin.here.critical().clone();
         let mut walk = Walk { place: begin, sense, step: self.range.step, has_turned: false };
         loop {
@@ -351,7 +355,7 @@ impl<'a> CriticalCurve<'a> {
         };
         let what = critical_point::describe(&scene, &walk.place.history, &condition);
         let note = PointNote { event: Some(what.clone()), codimension_two: true, from_path: false };
-        let at_change = Place { here: change.clone(), history: walk.place.history.clone(), before: None };
+        let at_change = CurvePosition { here: change.clone(), history: walk.place.history.clone(), before: None };
         flow(self.emit(&scene, &at_change, note, accept))?;
         walk.step = self.range.step;
         if change.parameter == walk.target(&self.range) {
@@ -361,8 +365,8 @@ impl<'a> CriticalCurve<'a> {
     }
 
     /// Goes round a point where the curve turns back in the parameter.
-    fn turn_back(&mut self, walk: &mut Walk, turn: Turn, accept: AcceptPoint<'_>) -> ControlFlow<Stopped> {
-        let Turn { at: (scene, at), past: (scene_past, past) } = turn;
+    fn turn_back(&mut self, walk: &mut Walk, turn: TurningPoint, accept: AcceptPoint<'_>) -> ControlFlow<Stopped> {
+        let TurningPoint { at: (scene, at), past: (scene_past, past) } = turn;
         let event = Some("a load maximum and a load minimum meet and vanish; the curve turns back".to_owned());
         walk.place.here = at.clone();
         flow(self.emit(&scene, &walk.place, PointNote { event, codimension_two: true, from_path: false }, accept))?;
@@ -380,9 +384,9 @@ impl<'a> CriticalCurve<'a> {
     }
 
     /// The critical point at a value, found from the last ones of the curve; `None` where it is not the same one.
-    fn near(&mut self, place: &Place, scene: &Scene, value: f64) -> Option<SolvedHistory> {
+    fn near(&mut self, place: &CurvePosition, scene: &Scene, value: f64) -> Option<SolvedHistory> {
         let guesses = extrapolated(place, scene, value);
-        let solved = place.history.solve(scene, value, &guesses, &mut self.work)?;
+        let solved = SolvedHistory::of(&place.history, scene, value, &guesses, &mut self.work)?;
         let stage = place.history.points.last()?.stage;
         let critical = guesses.last()?;
         let before = place.here.scales.express(place.here.critical(), stage, scene);
@@ -397,7 +401,7 @@ impl<'a> CriticalCurve<'a> {
     /// them is found to be zero, as at a pole.
     fn change_before(
         &mut self,
-        place: &Place,
+        place: &CurvePosition,
         value: f64,
         past: &SolvedHistory,
         broken: &[PathCondition],
@@ -422,7 +426,7 @@ impl<'a> CriticalCurve<'a> {
     /// A value at which the least of these conditions is zero, between the last point and a value past it.
     fn root(
         &mut self,
-        place: &Place,
+        place: &CurvePosition,
         value: f64,
         past: &SolvedHistory,
         broken: &[PathCondition],
@@ -477,7 +481,7 @@ impl<'a> CriticalCurve<'a> {
     /// between them.
     fn from_path(
         &mut self,
-        place: &Place,
+        place: &CurvePosition,
         change: &SolvedHistory,
         scene: &Scene,
         value: f64,
@@ -492,8 +496,8 @@ impl<'a> CriticalCurve<'a> {
         }
         let mut continues = |passed: &Vec<PassedPoint>| {
             let (history, guesses) = ContactHistory::of(scene, passed).ok()?;
-            let here = history.solve(scene, value, &guesses, &mut self.work)?;
-            let begin = Place { history, here, before: None };
+            let here = SolvedHistory::of(&history, scene, value, &guesses, &mut self.work)?;
+            let begin = CurvePosition { history, here, before: None };
             if !begin.here.broken().is_empty() {
                 return None;
             }
@@ -501,7 +505,7 @@ impl<'a> CriticalCurve<'a> {
             let at_change = back.scales.express(back.critical(), stage, &scene_at_change);
             let expected = change.scales.express(change.critical(), stage, &scene_at_change);
             let is_same = at_change.distance(&expected) <= SAME_POINT * (1.0 + size_of(&expected));
-            is_same.then_some(Place { before: Some(back), ..begin })
+            is_same.then_some(CurvePosition { before: Some(back), ..begin })
         };
         let place = candidates.iter().take(MOST_CANDIDATES).find_map(&mut continues);
         FoundOnPath { place, has_limits: !candidates.is_empty() }
@@ -509,7 +513,7 @@ impl<'a> CriticalCurve<'a> {
 
     /// The critical point of a history at the change that it comes from, by a few steps, with the scene there; unless `any`,
     /// the conditions of its path hold on the way.
-    fn back_to(&mut self, begin: &Place, value: f64, any: bool) -> Option<(Scene, SolvedHistory)> {
+    fn back_to(&mut self, begin: &CurvePosition, value: f64, any: bool) -> Option<(Scene, SolvedHistory)> {
         let mut place = begin.clone();
         for part in [0.5, 0.75, 0.9375, 1.0] {
             // The last value is the given one without round-off.
@@ -517,7 +521,7 @@ impl<'a> CriticalCurve<'a> {
                 if part < 1.0 { begin.here.parameter + part * (value - begin.here.parameter) } else { value };
             let scene = (self.family)(parameter).ok()?;
             let guesses = extrapolated(&place, &scene, parameter);
-            let next = place.history.solve(&scene, parameter, &guesses, &mut self.work)?;
+            let next = SolvedHistory::of(&place.history, &scene, parameter, &guesses, &mut self.work)?;
             if part == 1.0 {
                 return Some((scene, next));
             }
@@ -533,7 +537,7 @@ impl<'a> CriticalCurve<'a> {
     fn send(
         &mut self,
         scene: &Scene,
-        place: &mut Place,
+        place: &mut CurvePosition,
         solved: SolvedHistory,
         accept: AcceptPoint<'_>,
     ) -> ControlFlow<Stopped> {
@@ -541,7 +545,13 @@ impl<'a> CriticalCurve<'a> {
         flow(self.emit(scene, place, PointNote { event: None, codimension_two: false, from_path: false }, accept))
     }
 
-    fn emit(&mut self, scene: &Scene, place: &Place, note: PointNote, accept: AcceptPoint<'_>) -> Result<(), Stopped> {
+    fn emit(
+        &mut self,
+        scene: &Scene,
+        place: &CurvePosition,
+        note: PointNote,
+        accept: AcceptPoint<'_>,
+    ) -> Result<(), Stopped> {
         self.pass(place, &note);
         let mut point = critical_point::point(scene, &place.history, &place.here, note, self.work);
         point.increment.index = self.points;
@@ -549,6 +559,30 @@ impl<'a> CriticalCurve<'a> {
         self.points += 1;
         self.place += if self.sense < 0.0 { -1 } else { 1 };
         if accept(point).is_break() { Err(Stopped::Cancelled) } else { Ok(()) }
+    }
+
+    /// Keeps a point to compare it with a path at the end, the last ones of many.
+    fn pass(&mut self, place: &CurvePosition, note: &PointNote) {
+        let parameter = place.here.parameter;
+        let close = CLEAR_OF_CHANGE * self.range.step;
+        if note.codimension_two {
+            let crowded = self.passed.iter_mut().rev().take_while(|one| (one.parameter - parameter).abs() < close);
+            crowded.for_each(|one| one.is_clear = false);
+        }
+        let is_close = self.change.is_some_and(|change| (change - parameter).abs() < close);
+        if note.codimension_two {
+            self.change = Some(parameter);
+        }
+        if self.passed.len() == MOST_KEPT {
+            self.passed.pop_front();
+        }
+        self.passed.push_back(PassedLimit {
+            parameter,
+            stage: place.history.points.last().map_or(0, |point| point.stage),
+            state: place.here.critical().clone(),
+            scales: place.here.scales.clone(),
+            is_clear: !note.codimension_two && !is_close,
+        });
     }
 
     /// The value after a step at most this long: where it can be, a whole number of longest steps from the first value.
@@ -579,8 +613,8 @@ fn size_of(state: &State) -> f64 {
 }
 
 /// Guesses at a value by the line through the last two points of the curve.
-pub(super) fn extrapolated(place: &Place, scene: &Scene, value: f64) -> Vec<PointGuess> {
-    let Place { history, here, before } = place;
+pub(super) fn extrapolated(place: &CurvePosition, scene: &Scene, value: f64) -> Vec<PointGuess> {
+    let CurvePosition { history, here, before } = place;
     let ratio = before.as_ref().map_or(0.0, |before| {
         let width = here.parameter - before.parameter;
         if width == 0.0 { 0.0 } else { (value - here.parameter) / width }

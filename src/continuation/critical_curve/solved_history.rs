@@ -1,7 +1,7 @@
 //! The points of a history at one value of the parameter, and the conditions under which a path comes along them.
 
 use crate::continuation::critical_curve::branch_point_location::ModeBranch;
-use crate::continuation::critical_curve::contact_history::{Closing, ContactHistory, HistoryPoint, PointGuess};
+use crate::continuation::critical_curve::contact_history::{ContactHistory, HistoryPoint, PointClosing, PointGuess};
 use crate::continuation::critical_curve::tolerances::PASSED;
 use crate::continuation::path_state::resumable_state::constant_load;
 use crate::continuation::scene::Scene;
@@ -126,36 +126,36 @@ impl SolvedHistory {
     }
 }
 
-impl ContactHistory {
+impl SolvedHistory {
     /// Finds the points of the history, one after the other, near guesses; `None` where one of them is not found.
-    pub fn solve(
-        &self,
+    pub fn of(
+        history: &ContactHistory,
         scene: &Scene,
         parameter: f64,
         guesses: &[PointGuess],
         work: &mut Work,
-    ) -> Option<SolvedHistory> {
-        self.solve_up_to(scene, parameter, guesses, None, work)
+    ) -> Option<Self> {
+        Self::up_to(history, scene, parameter, guesses, None, work)
     }
 
-    /// As [`solve`](Self::solve), but for the last point: in place of its event it has a plane.
-    pub fn solve_up_to(
-        &self,
+    /// As [`of`](Self::of), but for the last point: in place of its event it has a plane.
+    pub fn up_to(
+        history: &ContactHistory,
         scene: &Scene,
         parameter: f64,
         guesses: &[PointGuess],
         plane: Option<HyperplaneEquation<'_>>,
         work: &mut Work,
-    ) -> Option<SolvedHistory> {
+    ) -> Option<Self> {
         let contacts = scene.contacts.len();
-        if self.points.iter().any(|point| point.modes.len() != contacts || point.stage >= scene.stages.len()) {
+        if history.points.iter().any(|point| point.modes.len() != contacts || point.stage >= scene.stages.len()) {
             return None;
         }
         let mut anchor = State::at_rest(&scene.structure, contacts);
         let (mut reached, mut held) = (Vec::new(), constant_load(scene, &[]));
-        let (mut points, mut conditions) = (Vec::with_capacity(self.points.len()), Vec::new());
+        let (mut points, mut conditions) = (Vec::with_capacity(history.points.len()), Vec::new());
         let (mut modes, mut residual, mut off_event) = (Vec::new(), 0.0, 0.0);
-        for (place, (point, guess)) in self.points.iter().zip(guesses).enumerate() {
+        for (place, (point, guess)) in history.points.iter().zip(guesses).enumerate() {
             if reached.len() < point.stage {
                 while reached.len() < point.stage {
                     reached.push(std::mem::take(&mut anchor.load));
@@ -167,8 +167,8 @@ impl ContactHistory {
             }
             let loading = scene_loading(scene, point.stage, &held);
             let stage_ends = &scene.stages[point.stage].ends;
-            if point.closing == Closing::StageBegin {
-                let at = Solved { place, point, loading, force_scale: self.force_scale };
+            if point.closing == PointClosing::StageBegin {
+                let at = Solved { place, point, loading, force_scale: history.force_scale };
                 let leaving = at.leave(&anchor, &guess.rate, &mut conditions, work)?;
                 at.turns(None, Some(&leaving), &mut conditions);
                 points.push(PointGuess {
@@ -180,12 +180,12 @@ impl ContactHistory {
                 continue;
             }
             let closing = match point.closing {
-                Closing::StageBegin => return None,
-                Closing::Event(event) => event,
-                Closing::StageEnd(place) => EventFunction::End(*stage_ends.get(place)?),
+                PointClosing::StageBegin => return None,
+                PointClosing::Event(event) => event,
+                PointClosing::StageEnd(place) => EventFunction::End(*stage_ends.get(place)?),
             };
-            let branch = ModeBranch { loading, modes: &point.modes, anchor: &anchor, force_scale: self.force_scale };
-            let is_last = place + 1 == self.points.len();
+            let branch = ModeBranch { loading, modes: &point.modes, anchor: &anchor, force_scale: history.force_scale };
+            let is_last = place + 1 == history.points.len();
             let mut found = match plane.filter(|_| is_last) {
                 Some(plane) => {
                     let (found, value) = branch.in_plane(closing, guess, plane, work)?;
@@ -197,7 +197,7 @@ impl ContactHistory {
             if let EventFunction::End(end) = closing {
                 end.make_exact(&mut found.state);
             }
-            let at = Solved { place, point, loading, force_scale: self.force_scale };
+            let at = Solved { place, point, loading, force_scale: history.force_scale };
             at.arriving(&found.state, &found.rate, closing, stage_ends, &mut conditions);
             let leaving = match &guess.leaving_rate {
                 Some(towards) if point.changes => Some(at.leave(&found.state, towards, &mut conditions, work)?),
@@ -217,7 +217,7 @@ impl ContactHistory {
             of_mode.filter(|(_, mode)| **mode == Mode::Free).for_each(|(reaction, _)| *reaction = Reaction::default());
         }
         let scales = StateScales::of(scene);
-        Some(SolvedHistory { parameter, points, modes, reached, residual, off_event, conditions, scales })
+        Some(Self { parameter, points, modes, reached, residual, off_event, conditions, scales })
     }
 }
 

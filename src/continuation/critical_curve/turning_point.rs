@@ -5,7 +5,7 @@
 //! sought in a plane across the curve, and the parameter is the unknown.
 
 use crate::continuation::critical_curve::contact_history::PointGuess;
-use crate::continuation::critical_curve::curve::{Place, SceneFamily, extrapolated};
+use crate::continuation::critical_curve::curve::{CurvePosition, SceneFamily, extrapolated};
 use crate::continuation::critical_curve::solved_history::SolvedHistory;
 use crate::continuation::critical_curve::tolerances::{PARAMETER_ROUND_OFF, SMALLEST_RETURN};
 use crate::continuation::scene::Scene;
@@ -24,13 +24,18 @@ const MOST_PLANES: usize = 12;
 const MOST_PARABOLAS: usize = 6;
 
 /// A turning point, and a point of the curve past it.
-pub(super) struct Turn {
+pub(super) struct TurningPoint {
     pub at: (Scene, SolvedHistory),
     pub past: (Scene, SolvedHistory),
 }
 
 /// The turning point past the last point of a curve that goes in this sense of the parameter, if there is one near by.
-pub(super) fn turn(family: SceneFamily<'_>, place: &Place, sense: f64, work: &mut Work) -> Option<Turn> {
+pub(super) fn turn(
+    family: SceneFamily<'_>,
+    place: &CurvePosition,
+    sense: f64,
+    work: &mut Work,
+) -> Option<TurningPoint> {
     let before = place.before.as_ref()?;
     if place.history.kind != PointKind::SmoothLimit || place.here.parameter == before.parameter {
         return None;
@@ -65,11 +70,16 @@ pub(super) fn turn(family: SceneFamily<'_>, place: &Place, sense: f64, work: &mu
     }
     let at = at?;
     let is_ahead = sense * (at.1.parameter - last) >= 0.0;
-    is_ahead.then_some(Turn { at, past })
+    is_ahead.then_some(TurningPoint { at, past })
 }
 
 /// The critical point in the plane across the last chord, at so many lengths of it from the last point.
-fn in_plane(family: SceneFamily<'_>, place: &Place, far: f64, work: &mut Work) -> Option<(Scene, SolvedHistory)> {
+fn in_plane(
+    family: SceneFamily<'_>,
+    place: &CurvePosition,
+    far: f64,
+    work: &mut Work,
+) -> Option<(Scene, SolvedHistory)> {
     let before = place.before.as_ref()?;
     let stage = place.history.points.last()?.stage;
     let width = place.here.parameter - before.parameter;
@@ -84,7 +94,7 @@ fn in_plane(family: SceneFamily<'_>, place: &Place, far: f64, work: &mut Work) -
         let state: State = from.advanced(&chord, far);
         *guess = PointGuess { state, from: from.clone(), ..guess.clone() };
         let plane = HyperplaneEquation { from: &from, rate: &normal, step: far * length };
-        let solved = place.history.solve_up_to(&scene, parameter, &guesses, Some(plane), work)?;
+        let solved = SolvedHistory::up_to(&place.history, &scene, parameter, &guesses, Some(plane), work)?;
         Some((scene, solved))
     };
     let mut here = solve(place.here.parameter)?;

@@ -81,9 +81,7 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
         tell_end_of_stage(&mut point, stage);
     }
     let reactions = arrived.filter(|arrived| is_anew(trace, arrived));
-    if let Some(rate) = arrival_rate {
-        trace.note_passed(rate, &arriving.modes, reached.event, point.kind, stage_ends);
-    }
+    trace.note_passed(arrival_rate, &arriving.modes, reached.event, point.kind, stage_ends);
     let row = trace.emit(Emitted {
         before: &before,
         reactions,

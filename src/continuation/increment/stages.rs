@@ -36,9 +36,8 @@ pub(crate) fn begin_stage(trace: &mut PathTrace<'_>) -> Increment {
     let system = ModeSystem::new(trace.loading(), &modes, &state);
     let residual = newton::judged(&system, state.clone(), trace.at.totals.force_scale).residual;
     let error_estimate = here.drift.as_ref().map_or(0.0, Rate::size);
-    if let Some(rate) = trace.at.here.rate.clone().filter(|_| trace.passed.is_some()) {
-        trace.note_passed(rate, &modes, None, PointKind::Start, false);
-    }
+    let rate = trace.passed.is_some().then(|| trace.at.here.rate.clone()).flatten();
+    trace.note_passed(rate, &modes, None, PointKind::Start, false);
     trace.emit(Emitted {
         before: &state,
         reactions: None,

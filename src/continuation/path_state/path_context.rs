@@ -233,18 +233,17 @@ impl<'a> PathTrace<'a> {
         row
     }
 
-    /// Keeps the present point, at which a step has arrived along `rate` in `modes`, if something happens there.
+    /// Keeps the present point, at which a step has arrived along `rate` in `modes`, if something happens there; without a rate
+    /// nothing is kept.
     pub(crate) fn note_passed(
         &mut self,
-        rate: Rate,
+        rate: Option<Rate>,
         modes: &[Mode],
         event: Option<EventFunction>,
         kind: PointKind,
         stage_ends: bool,
     ) {
-        if event.is_none() && !stage_ends && kind == PointKind::Regular {
-            return;
-        }
+        let Some(rate) = rate.filter(|_| event.is_some() || stage_ends || kind != PointKind::Regular) else { return };
         let point = PassedPoint::at(self.scene, &self.at, rate, modes, event, kind, stage_ends);
         self.passed.iter_mut().for_each(|passed| passed.push(point.clone()));
     }

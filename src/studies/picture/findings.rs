@@ -1,6 +1,6 @@
 //! The findings of studies, sweeps and curves as tables and pictures; called by `command` and `http`.
 
-use crate::studies::critical_curves::CurveFound;
+use crate::studies::critical_curves::{self, CurveFound};
 use crate::studies::error_against_time::StudyReport;
 use crate::studies::error_against_time::table;
 use crate::studies::picture::{PlotError, critical_curve, study, sweep};
@@ -51,11 +51,11 @@ impl Findings for CurveFound {
     const NOT_DRAWN: &'static str = "no point of it has been found yet";
 
     fn csv(&self) -> serde_json::Result<String> {
-        self.csv()
+        critical_curves::table::csv(self)
     }
 
     fn text(&self) -> serde_json::Result<String> {
-        self.text()
+        critical_curves::table::text(self)
     }
 
     fn svg(&self) -> Result<String, PlotError> {
