@@ -338,7 +338,7 @@ impl<'a> CriticalCurve<'a> {
                 return walk.shorten();
             }
             let from = walk.place.here.clone();
-            let lost = || "its equations have no solution near by past this value".to_owned();
+            let lost = || "steps became too short, and no solution of its equations was found near by".to_owned();
             return self.go_on_past(walk, &from, accept, lost);
         };
         let broken = solved.broken();
@@ -461,7 +461,7 @@ impl<'a> CriticalCurve<'a> {
             let value = stepped(change.parameter, walk.sense * part * self.range.step, walk.target(&self.range));
             let Ok(scene) = (self.family)(value) else { continue };
             let is_last = part == PAST_CHANGE[PAST_CHANGE.len() - 1];
-            let found = self.from_path(&walk.place, change, &scene, value, is_last);
+            let found = self.critical_on_path(&walk.place, change, &scene, value, is_last);
             if self.cancel.is_cancelled() {
                 return ControlFlow::Break(Stopped::Cancelled);
             }
@@ -479,7 +479,7 @@ impl<'a> CriticalCurve<'a> {
 
     /// The critical point that continues the curve, on a path at a value past a change. Unless `any`, no other change lies
     /// between them.
-    fn from_path(
+    fn critical_on_path(
         &mut self,
         place: &CurvePosition,
         change: &SolvedHistory,

@@ -97,6 +97,10 @@ fn told(end: &DirectionEnd) -> String {
         DirectionEnd::Long { value } => {
             format!("the curve has as many points as one may have, the last at {}", in_words(*value))
         }
-        DirectionEnd::Model { value, errors } => format!("the model is refused at {}: {errors}", in_words(*value)),
+        DirectionEnd::Model { value, errors } => {
+            // One line, however many mistakes there are.
+            let mistakes = errors.to_string().replace('\n', "; ");
+            format!("the model is refused at {}: {mistakes}", in_words(*value))
+        }
     }
 }

@@ -72,7 +72,7 @@ pub fn text(found: &CurveFound) -> serde_json::Result<String> {
     let ends = [("smaller", &summary.ends_below), ("larger", &summary.ends_above)];
     let _ = writeln!(
         text,
-        "\nx: the points change their kind, or the path to them; o: on a path traced for it, {} in all",
+        "\nx: a change of kind, or of the path; o: found on a path traced for it; paths traced in all: {}",
         summary.paths
     );
     for (side, end) in ends {

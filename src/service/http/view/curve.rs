@@ -20,7 +20,7 @@ pub struct Curve {
     pub stop_reason: Option<String>,
     #[schema(value_type = CurvePlan)]
     pub plan: Box<RawValue>,
-    /// Null before the end.
+    /// Null before the end, and where it was cancelled.
     #[schema(value_type = Option<CurveSummary>)]
     pub report: Option<Box<RawValue>>,
     pub links: CurveLinks,
