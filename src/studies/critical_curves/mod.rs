@@ -10,7 +10,7 @@
 
 pub(crate) mod row;
 pub(crate) mod run;
-pub(crate) mod table;
+pub mod table;
 
 pub use row::{CurveFound, CurveRow, CurveSummary};
 pub use run::run;
