@@ -5,7 +5,7 @@ use crate::command::output::findings;
 use crate::command::output::outcome::{FAILED, Failure, Outcome};
 use crate::model::{ParameterCurve, decode};
 use crate::resources::cancel::CancelFlag;
-use crate::studies::critical_curves;
+use crate::studies::critical_curves::{self, CurveFound};
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 
@@ -50,14 +50,18 @@ pub fn run(arguments: &Arguments) -> Outcome {
     arguments.written.check()?;
     let curve = ParameterCurve::read(&arguments.text()?).map_err(input::refused)?;
     let progress = findings::counter("points");
-    let accept = &mut |_: &critical_curves::CurveRow| {
+    let mut rows = Vec::new();
+    let accept = &mut |row| {
+        rows.push(row);
         progress.inc(1);
         ControlFlow::Continue(())
     };
-    let found = critical_curves::run(&curve, &CancelFlag::default(), accept).map_err(input::refused)?;
+    let summary = critical_curves::run(&curve, &CancelFlag::default(), accept).map_err(input::refused)?;
     progress.finish_and_clear();
+    let is_complete = summary.complete;
+    let found = CurveFound::begun(curve.name, curve.settings, curve.dimension).with(rows, Some(summary));
     arguments.written.write(&found)?;
-    Ok(if found.summary.is_some_and(|summary| summary.complete) { ExitCode::SUCCESS } else { ExitCode::from(FAILED) })
+    Ok(if is_complete { ExitCode::SUCCESS } else { ExitCode::from(FAILED) })
 }
 
 impl Arguments {

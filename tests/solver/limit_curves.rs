@@ -20,7 +20,13 @@ fn curve_of(request: &JobRequest, settings: &Value) -> Result<ParameterCurve, In
 }
 
 fn followed(curve: &ParameterCurve) -> Result<CurveFound, InputErrors> {
-    let found = critical_curves::run(curve, &CancelFlag::default(), &mut |_| ControlFlow::Continue(()))?;
+    let mut rows = Vec::new();
+    let accept = &mut |row| {
+        rows.push(row);
+        ControlFlow::Continue(())
+    };
+    let summary = critical_curves::run(curve, &CancelFlag::default(), accept)?;
+    let found = CurveFound::begun(None, curve.settings.clone(), curve.dimension).with(rows, Some(summary));
     for row in &found.rows {
         assert!(row.measure.largest_of_state() <= 1e-9, "{}: {:?}", row.value, row.measure);
     }
@@ -125,6 +131,38 @@ fn the_limit_point_of_the_arch_becomes_smooth_at_its_critical_friction() {
         let off = worst(&curve, &found);
         println!("{off:e} from paths of their own");
         assert!(off <= 1e-8, "{off:e}");
+    }
+}
+
+/// The path is traced anew past the change however many increments it takes to its limit point.
+#[test]
+fn a_change_is_passed_by_a_path_of_many_short_steps() {
+    let mut request = arch(1.05);
+    (request.analysis.arc_length.initial, request.analysis.arc_length.max) = (0.004, 0.004);
+    request.analysis.max_increments = 2_000;
+    let settings = json!({"parameter": "/model/contacts/0/friction", "range": [1, 1.1], "step": 0.05});
+    let found = followed(&curve_of(&request, &settings).expect("a curve")).expect("a curve");
+    assert_eq!(ended(&found).ends_below.as_deref(), Some("the end of the range is reached"));
+    let first = found.rows.first().expect("a row");
+    assert_eq!((first.value, first.kind), (1.0, PointKind::NonsmoothLimit));
+}
+
+/// A curve that is cancelled, at a point or while a path is compared with it, says nothing of its ends.
+#[test]
+fn a_cancelled_curve_claims_no_end() {
+    let settings = json!({"parameter": "/model/contacts/*/friction", "range": [0, 2], "step": 0.1});
+    let curve = curve_of(&scene_file("arch-type-truss"), &settings).expect("a curve");
+    for last in [0, 3, 16, 20] {
+        let (cancel, mut count) = (CancelFlag::default(), 0);
+        let summary = critical_curves::run(&curve, &cancel, &mut |row| {
+            count += 1;
+            if row.index == last {
+                cancel.cancel();
+            }
+            ControlFlow::Continue(())
+        });
+        let summary = summary.expect("a curve");
+        assert!(!summary.complete && summary.ends_above.is_none() && count == last + 1, "{last}: {summary:?}");
     }
 }
 

@@ -6,15 +6,15 @@
 //! is the zero of its event function on the branch of its mode, from the point before. With another value of the parameter
 //! the same points are found again by Newton's method, without the path between them.
 
+use crate::continuation::critical_curve::solved_history::scene_loading;
+use crate::continuation::critical_curve::tolerances::ZERO_AT_POINT;
 use crate::continuation::path_state::passed_points::PassedPoint;
+use crate::continuation::path_state::resumable_state::constant_load;
 use crate::continuation::scene::Scene;
-use crate::mechanics::contact::{Mode, Sliding, all_continue};
+use crate::mechanics::contact::{ContactPair, Mode, Sliding, all_continue};
 use crate::mechanics::problem::state::{Rate, State};
 use crate::result::increment::PointKind;
 use crate::step::event_functions::{self, EventFunction};
-
-use crate::continuation::critical_curve::solved_history::scene_loading;
-use crate::continuation::critical_curve::tolerances::ZERO_AT_POINT;
 
 /// Why a critical point cannot be followed in a parameter.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -139,8 +139,8 @@ impl ContactHistory {
 
     /// Whether contacts have friction in this model that had none in that of the path: the path may slip otherwise there.
     pub fn gets_friction(&self, scene: &Scene) -> bool {
-        let pairs = self.frictional.iter().zip(&scene.contacts);
-        pairs.into_iter().any(|(had, contact)| !had && contact.tangents() > 0)
+        let mut pairs = self.frictional.iter().zip(&scene.contacts);
+        pairs.any(|(had, contact)| !had && contact.tangents() > 0)
     }
 }
 
@@ -155,7 +155,7 @@ fn sign(rate: Option<&Rate>) -> f64 {
 /// The event functions of the mode after a point that are zero there.
 fn touching(scene: &Scene, point: &PassedPoint, reached: &[f64]) -> Vec<EventFunction> {
     let Some(rate) = &point.leaving_rate else { return Vec::new() };
-    let held = crate::continuation::path_state::resumable_state::constant_load(scene, reached);
+    let held = constant_load(scene, reached);
     let loading = scene_loading(scene, point.stage, &held);
     let of_mode = event_functions::of_mode(loading, &point.leaving_modes, &point.state, rate);
     let is_zero = |function: &EventFunction| {
@@ -188,7 +188,7 @@ fn refuse_scene(scene: &Scene) -> Result<(), HistoryRefusal> {
 }
 
 fn refuse_modes(scene: &Scene, modes: &[Mode]) -> Result<(), HistoryRefusal> {
-    let turns = |(mode, contact): (&Mode, &crate::mechanics::contact::ContactPair)| {
+    let turns = |(mode, contact): (&Mode, &ContactPair)| {
         matches!(mode, Mode::Slip { .. }) && contact.tangents() > 0 && contact.sliding == Sliding::Plane
     };
     let turning = modes.iter().zip(&scene.contacts).position(turns);

@@ -23,6 +23,9 @@ pub struct CurvePoint {
     pub from_path: bool,
     /// Load factors at which the stages before ended.
     pub stage_ends: Vec<f64>,
+    /// The scales of the model at this value, as its plan has them: of lengths, and of the load of each stage.
+    pub displacement_scale: f64,
+    pub load_scales: Vec<f64>,
     /// The state: displacements, contacts, forces, load factor; `point.kind` is the kind of the critical point. It has no
     /// energies, no arc length and no slip, which are of the path.
     pub increment: Increment,
@@ -78,6 +81,8 @@ pub(super) fn point(
         codimension_two: note.codimension_two,
         from_path: note.from_path,
         stage_ends: ends.collect(),
+        displacement_scale: scene.plan().displacement_scale,
+        load_scales: scene.plan().load_scales.clone(),
         increment: row_conversion::increment(scene, &totals, &row),
     }
 }

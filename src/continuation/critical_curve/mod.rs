@@ -4,13 +4,21 @@
 //! Methods Appl. Mech. Eng. 114 (1994) 77). There the extended system is equilibrium with the condition that its tangent is
 //! singular. Here the state depends on the path as well, through friction, and a limit point may be nonsmooth: the extended
 //! system comprises the points at which contacts change, each with the equation of its event, and the limit point at last
-//! (`contact_history`). It is block triangular, and is solved block by block (`solved_history`).
+//! (`contact_history`):
+//!
+//! ```text
+//! R_k(x_k; x_{k-1}, p) = 0,    e_k(x_k) = 0,    k = 1, ..., n
+//! ```
+//!
+//! with the equilibrium `R_k` of the contact mode that begins at `x_{k-1}`, and the event function `e_k` that is zero at its
+//! end; `e_n` is the load rate, or the event function of the contact with which the load turns. The system is block
+//! triangular, and is solved block by block (`solved_history`).
 //!
 //! Along the curve the conditions under which a path passes through these points are watched. Where one of them ends, the
 //! critical point changes its kind, or the path to it its changes of contact: a point of codimension two, which is located
 //! in the parameter. Past it the path itself is traced once more, and its critical point at the same place goes on with the
 //! curve; where there is none, the curve ends, and this is said. Where two limit points meet, the curve turns back in the
-//! parameter and goes on along the other one (`turning_point`).
+//! parameter and goes on along the other one (`turning_point`). At each end one of the last points is compared with a path.
 //!
 //! | file | contents |
 //! |---|---|
@@ -18,20 +26,26 @@
 //! | `branch_point_location` | one of these points, by Newton's method along the branch of its mode |
 //! | `solved_history` | all of them at one value of the parameter, and the conditions of the path |
 //! | `traced_history` | the history of a path, traced for it |
-//! | `curve` | the curve, from point to point |
+//! | `curve`, `curve_position` | the curve, from point to point |
+//! | `traced_paths`, `last_points` | paths to go on past a change, and to compare the ends of the curve with |
 //! | `turning_point` | where it turns back in the parameter |
-//! | `critical_point` | a point of the curve in the user's units; its event in words |
+//! | `critical_point`, `curve_outcome` | a point of the curve in the user's units, its event in words; how a curve ends |
 //! | `tolerances` | |
 
 mod branch_point_location;
 pub(crate) mod contact_history;
 pub(crate) mod critical_point;
 pub(crate) mod curve;
+pub(crate) mod curve_outcome;
+pub(crate) mod curve_position;
+mod last_points;
 mod solved_history;
 mod tolerances;
-mod traced_history;
+pub(crate) mod traced_history;
+mod traced_paths;
 mod turning_point;
 
 pub use critical_point::CurvePoint;
-pub use curve::{CriticalCurve, CurveEnd, CurveFailure, CurveRange, CurveReport, DirectionEnd};
+pub use curve::{CriticalCurve, CurveRange};
+pub use curve_outcome::{CurveEnd, CurveFailure, CurveReport, DirectionEnd};
 pub use traced_history::CurveStart;

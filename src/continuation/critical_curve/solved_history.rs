@@ -2,7 +2,7 @@
 
 use crate::continuation::critical_curve::branch_point_location::ModeBranch;
 use crate::continuation::critical_curve::contact_history::{ContactHistory, HistoryPoint, PointClosing, PointGuess};
-use crate::continuation::critical_curve::tolerances::PASSED;
+use crate::continuation::critical_curve::tolerances::{FOUND_ZERO, PASSED};
 use crate::continuation::path_state::resumable_state::constant_load;
 use crate::continuation::scene::Scene;
 use crate::mechanics::contact::{Mode, Reaction};
@@ -124,9 +124,17 @@ impl SolvedHistory {
     pub fn broken(&self) -> Vec<PathCondition> {
         self.conditions.iter().filter(|(_, value)| *value < -PASSED).map(|(condition, _)| *condition).collect()
     }
-}
 
-impl SolvedHistory {
+    /// The conditions that do not hold, and those that end just here: they are zero, and were not at the point before.
+    pub fn ended_since(&self, before: &Self) -> Vec<PathCondition> {
+        let held = |condition: &PathCondition| {
+            before.conditions.iter().any(|(other, value)| other.is_like(condition) && *value > FOUND_ZERO)
+        };
+        let ended =
+            |(condition, value): &&(PathCondition, f64)| *value < -PASSED || *value <= PASSED && held(condition);
+        self.conditions.iter().filter(ended).map(|(condition, _)| *condition).collect()
+    }
+
     /// Finds the points of the history, one after the other, near guesses; `None` where one of them is not found.
     pub fn of(
         history: &ContactHistory,

@@ -24,6 +24,10 @@ pub(crate) const LARGEST_CORRECTION: f64 = 0.2;
 /// curve, from which on the step is refused: another critical point may have been found.
 pub(crate) const LARGEST_DEVIATION: f64 = 0.5;
 
+/// Largest change of the critical point in the first step from a point without direction, relative to the size of the state:
+/// a larger one may be that to another critical point.
+pub(crate) const FIRST_DEVIATION: f64 = 0.1;
+
 /// Such distances are never taken for shorter than this, in dimensionless displacement and load.
 pub(crate) const SHORTEST_CHORD: f64 = 1e-5;
 
@@ -42,6 +46,12 @@ pub(crate) const SMALLEST_RETURN: f64 = 0.05;
 /// Part of the longest step below which a refused model ends the curve: what makes a model impossible, such as a stiffness of
 /// zero, is stated to that.
 pub(crate) const MODEL_STEP: f64 = 1.0 / 64.0;
+
+/// Remainders of the range up to this part of a step are round-off, and are no steps of their own.
+pub(crate) const STEP_ROUND_OFF: f64 = 1e-9;
+
+/// Width of a bracket of the turning point, in units of the last chord, at which its parabola has converged.
+pub(crate) const TURNING_WIDTH: f64 = 1e-6;
 
 /// Factor by which a step that was accepted grows.
 pub(crate) const STEP_GROWTH: f64 = 2.0;

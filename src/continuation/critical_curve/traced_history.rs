@@ -24,16 +24,23 @@ pub enum CurveStart {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CurveRefusal {
     /// The path has too few limit points.
-    #[error("the path has {found} limit points and ends; limit point {asked} was asked for")]
+    #[error("limit point {asked} was asked for; the path has {found} of them and ends: {why}")]
     NoLimitPoint {
         /// Number of limit points.
         found: u64,
         /// The one asked for, from 1.
         asked: u64,
+        /// Why the path ends, in words.
+        why: String,
     },
     /// The path ends before the increment.
-    #[error("the path ends before increment {0}")]
-    NoIncrement(u64),
+    #[error("the path ends before increment {index}: {why}")]
+    NoIncrement {
+        /// Index of the increment.
+        index: u64,
+        /// Why the path ends, in words.
+        why: String,
+    },
     /// The increment is no limit point.
     #[error("increment {0} is no limit point; take one whose `point.kind` is `smooth_limit` or `nonsmooth_limit`")]
     NotCritical(u64),
@@ -62,31 +69,33 @@ fn is_joined(point: &PassedPoint) -> bool {
     point.event.is_none() && point.leaving_modes != point.modes
 }
 
-/// The points of a path up to the critical point at which a curve starts.
+/// The critical point at which a curve starts.
+pub(super) struct FirstPoint {
+    pub history: ContactHistory,
+    pub guesses: Vec<PointGuess>,
+    /// Index of its increment.
+    pub index: u64,
+}
+
+/// Traces a path to the critical point at which a curve starts.
 ///
 /// # Errors
 /// See [`CurveRefusal`].
-pub(super) fn start(
-    scene: &Scene,
-    start: CurveStart,
-    cancel: &CancelFlag,
-) -> Result<(ContactHistory, Vec<PointGuess>), CurveRefusal> {
+pub(super) fn start(scene: &Scene, start: CurveStart, cancel: &CancelFlag) -> Result<FirstPoint, CurveRefusal> {
     let passed = up_to(scene, start, cancel)?;
-    let passed = if passed.iter().any(is_joined) {
-        let asked = passed[passed.len() - 1].clone();
-        let mut nearest = near(scene, &asked.state, asked.stage, 4 * asked.index + 100, cancel);
-        let found = nearest.drain(..).next().ok_or(CurveRefusal::NotResolved)?;
-        let last = &found[found.len() - 1];
-        if last.state.distance(&asked.state)
-            > ASKED_POINT * (1.0 + asked.state.distance(&State::at_rest(&scene.structure, 0)))
-        {
-            return Err(CurveRefusal::NotResolved);
-        }
-        found
-    } else {
-        passed
-    };
-    Ok(ContactHistory::of(scene, &passed)?)
+    let asked = &passed[passed.len() - 1];
+    if !passed.iter().any(is_joined) {
+        return first(scene, &passed);
+    }
+    let limits = LimitsOnPath::near(scene, &asked.state, asked.stage, 4 * asked.index + 100, cancel);
+    let found = limits.nearest_first().next().ok_or(CurveRefusal::NotResolved)?;
+    let off = found[found.len() - 1].state.distance(&asked.state);
+    if off > ASKED_POINT * (1.0 + asked.state.size()) { Err(CurveRefusal::NotResolved) } else { first(scene, found) }
+}
+
+fn first(scene: &Scene, passed: &[PassedPoint]) -> Result<FirstPoint, CurveRefusal> {
+    let (history, guesses) = ContactHistory::of(scene, passed)?;
+    Ok(FirstPoint { history, guesses, index: passed[passed.len() - 1].index })
 }
 
 /// The points of the path as it was asked for, up to the critical point.
@@ -101,38 +110,51 @@ fn up_to(scene: &Scene, start: CurveStart, cancel: &CancelFlag) -> Result<Vec<Pa
         seen = passed.len();
         limits += u64::from(fresh.is_some());
         match start {
-            CurveStart::LimitPoint(asked) if fresh.is_some() && limits == asked => return Ok(passed.to_vec()),
+            CurveStart::LimitPoint(asked) if fresh.is_some() && limits == asked => return Ok(path.into_passed_points()),
             CurveStart::Increment(index) if increment.index == index => {
-                return if fresh.is_some() { Ok(passed.to_vec()) } else { Err(CurveRefusal::NotCritical(index)) };
+                return if fresh.is_some() {
+                    Ok(path.into_passed_points())
+                } else {
+                    Err(CurveRefusal::NotCritical(index))
+                };
             }
             CurveStart::LimitPoint(_) | CurveStart::Increment(_) => {}
         }
     }
+    let why = path.report().map_or_else(String::new, |report| report.sentence);
     Err(match start {
         _ if cancel.is_cancelled() => CurveRefusal::Cancelled,
-        CurveStart::LimitPoint(asked) => CurveRefusal::NoLimitPoint { found: limits, asked },
-        CurveStart::Increment(index) => CurveRefusal::NoIncrement(index),
+        CurveStart::LimitPoint(asked) => CurveRefusal::NoLimitPoint { found: limits, asked, why },
+        CurveStart::Increment(index) => CurveRefusal::NoIncrement { index, why },
     })
 }
 
-/// The limit points of a stage on a path with all contact changes resolved, each with the points before, those nearest to a
-/// state first; of the first `most` increments.
-pub(super) fn near(
-    scene: &Scene,
-    expected: &State,
-    stage: usize,
-    most: u64,
-    cancel: &CancelFlag,
-) -> Vec<Vec<PassedPoint>> {
-    let mut scene = scene.clone();
-    scene.analysis.events = Events::All;
-    scene.analysis.max_increments = scene.analysis.max_increments.max(most);
-    let mut path = Path::new(&scene, cancel.clone());
-    path.keep_passed_points();
-    while path.next().is_some_and(|increment| increment.index < most) {}
-    let passed = path.passed_points();
-    let limits = passed.iter().enumerate().filter(|(_, point)| point.stage == stage && is_limit(point));
-    let mut limits: Vec<(f64, usize)> = limits.map(|(place, point)| (point.state.distance(expected), place)).collect();
-    limits.sort_by(|a, b| a.0.total_cmp(&b.0));
-    limits.iter().map(|(_, place)| passed[..=*place].to_vec()).collect()
+/// The limit points of a stage on a path with all contact changes resolved.
+pub(super) struct LimitsOnPath {
+    passed: Vec<PassedPoint>,
+    /// Places of the limit points among them, the one nearest to a state first.
+    limits: Vec<usize>,
+}
+
+impl LimitsOnPath {
+    /// Traces the first `most` increments of a path.
+    pub fn near(scene: &Scene, expected: &State, stage: usize, most: u64, cancel: &CancelFlag) -> Self {
+        let mut scene = scene.clone();
+        scene.analysis.events = Events::All;
+        scene.analysis.max_increments = scene.analysis.max_increments.max(most);
+        let mut path = Path::new(&scene, cancel.clone());
+        path.keep_passed_points();
+        while path.next().is_some_and(|increment| increment.index < most) {}
+        let passed = path.into_passed_points();
+        let limits = passed.iter().enumerate().filter(|(_, point)| point.stage == stage && is_limit(point));
+        let mut limits: Vec<(f64, usize)> =
+            limits.map(|(place, point)| (point.state.distance(expected), place)).collect();
+        limits.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Self { passed, limits: limits.into_iter().map(|(_, place)| place).collect() }
+    }
+
+    /// The points of the path up to each limit point, the nearest one first.
+    pub fn nearest_first(&self) -> impl Iterator<Item = &[PassedPoint]> {
+        self.limits.iter().map(|place| &self.passed[..=*place])
+    }
 }

@@ -2,12 +2,17 @@
 //! minimum, meet there and vanish (a cusp of the equilibrium surface).
 //!
 //! Near such a point the state does not follow from the parameter, but the parameter from the state: the critical point is
-//! sought in a plane across the curve, and the parameter is the unknown.
+//! sought in a plane across the last chord `c` of the curve, and the parameter `p` is the unknown (pseudo-arclength
+//! continuation; H. B. Keller, in: *Applications of Bifurcation Theory*, Academic Press 1977, 359):
+//!
+//! ```text
+//! c·(x - x_last) = const,    R(x, p) = 0,    e(x) = 0
+//! ```
 
 use crate::continuation::critical_curve::contact_history::PointGuess;
-use crate::continuation::critical_curve::curve::{CurvePosition, SceneFamily, extrapolated};
+use crate::continuation::critical_curve::curve_position::{CurvePosition, SceneFamily, extrapolated};
 use crate::continuation::critical_curve::solved_history::SolvedHistory;
-use crate::continuation::critical_curve::tolerances::{PARAMETER_ROUND_OFF, SMALLEST_RETURN};
+use crate::continuation::critical_curve::tolerances::{PARAMETER_ROUND_OFF, SMALLEST_RETURN, TURNING_WIDTH};
 use crate::continuation::scene::Scene;
 use crate::mechanics::equations::closing_equation::HyperplaneEquation;
 use crate::mechanics::problem::state::State;
@@ -64,7 +69,7 @@ pub(super) fn turn(
             known.iter().enumerate().max_by(|(_, a), (_, b)| (a.0 - top).abs().total_cmp(&(b.0 - top).abs()))?.0;
         known[if nearest == farthest { 0 } else { farthest }] = (top, found.1.parameter);
         at = Some(found);
-        if width <= 1e-6 {
+        if width <= TURNING_WIDTH {
             break;
         }
     }

@@ -67,6 +67,11 @@ impl<'a> Path<'a> {
         self.trace.passed.as_deref().unwrap_or_default()
     }
 
+    /// The points kept so far, without the path.
+    pub(crate) fn into_passed_points(self) -> Vec<PassedPoint> {
+        self.trace.passed.unwrap_or_default()
+    }
+
     /// A checkpoint of the path at its present point; valid after any call of `next`.
     pub fn checkpoint(&self) -> Checkpoint {
         checkpoint::put_down(&self.trace)

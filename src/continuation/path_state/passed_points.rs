@@ -5,6 +5,7 @@ use crate::continuation::scene::Scene;
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::state::{Rate, State};
+use crate::resources::budget::{self, Taken};
 use crate::result::increment::PointKind;
 use crate::step::event_functions::EventFunction;
 use crate::step::tolerances::BOUND_TOLERANCE;
@@ -29,6 +30,7 @@ pub(crate) struct PassedPoint {
     pub stage_ends: bool,
     /// The largest force so far.
     pub force_scale: f64,
+    _held: Taken,
 }
 
 impl PassedPoint {
@@ -42,6 +44,11 @@ impl PassedPoint {
         kind: PointKind,
         stage_ends: bool,
     ) -> Self {
+        // State and two rates over all degrees of freedom, each with a reaction a contact, and two modes a contact.
+        let contacts = scene.contacts.len();
+        let mut held = budget::take::<f64>(3 * scene.structure.freedoms());
+        held.add::<Reaction>(3 * contacts);
+        held.add::<Mode>(2 * contacts);
         let whole = WholeScene { scene, near: &at.near };
         let state = whole.state(&at.here.state);
         let bound = || {
@@ -61,6 +68,7 @@ impl PassedPoint {
             state,
             stage_ends,
             force_scale: at.totals.force_scale,
+            _held: held,
         }
     }
 }

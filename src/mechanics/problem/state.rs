@@ -64,6 +64,11 @@ impl State {
         chord
     }
 
+    /// The norm `‖(u, s)‖`.
+    pub fn size(&self) -> f64 {
+        dot(&self.displacement, &self.displacement).sqrt().hypot(self.load)
+    }
+
     /// The distance `‖(Δu, Δs)‖` to another state.
     pub fn distance(&self, other: &Self) -> f64 {
         let squared: f64 = self.displacement.iter().zip(&other.displacement).map(|(a, b)| (a - b) * (a - b)).sum();

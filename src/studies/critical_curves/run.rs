@@ -9,17 +9,17 @@ use crate::continuation::scene::Scene;
 use crate::model::{InputError, InputErrors, ParameterCurve};
 use crate::resources::cancel::CancelFlag;
 use crate::result::increment::Increment;
-use crate::studies::critical_curves::row::{CurveFound, CurveRow, CurveSummary};
+use crate::studies::critical_curves::row::{CurveRow, CurveSummary};
 use std::ops::ControlFlow;
 
 /// Receives the points as they are found; breaks to end the curve.
-pub type AcceptRow<'a> = &'a mut dyn FnMut(&CurveRow) -> ControlFlow<()>;
+pub type AcceptRow<'a> = &'a mut dyn FnMut(CurveRow) -> ControlFlow<()>;
 
-/// Follows a curve; every point is passed to `accept`. The findings are reproducible, bit for bit.
+/// Follows a curve; every point is passed to `accept`, and none is kept. The findings are reproducible, bit for bit.
 ///
 /// # Errors
 /// Mistakes of the model at its own value; a path without this limit point, or one that cannot be followed.
-pub fn run(curve: &ParameterCurve, cancel: &CancelFlag, accept: AcceptRow<'_>) -> Result<CurveFound, InputErrors> {
+pub fn run(curve: &ParameterCurve, cancel: &CancelFlag, accept: AcceptRow<'_>) -> Result<CurveSummary, InputErrors> {
     let request_at = |value: f64| {
         let mut request = curve.request(value)?;
         // A point says the displacements and contacts of the whole model, whatever increments are to record.
@@ -33,15 +33,13 @@ pub fn run(curve: &ParameterCurve, cancel: &CancelFlag, accept: AcceptRow<'_>) -
         (Some(index), _) => CurveStart::Increment(index),
         (None, asked) => CurveStart::LimitPoint(asked.unwrap_or(1)),
     };
-    let mut rows: Vec<CurveRow> = Vec::new();
     let mut take = |point: CurvePoint| {
+        // The point was found with this model.
         let Ok(request) = request_at(point.value) else { return ControlFlow::Break(()) };
-        let Ok(scene) = Scene::new(&request) else { return ControlFlow::Break(()) };
-        let plan = scene.plan();
-        let mut judge = Judge::new(&request, plan.displacement_scale, &plan.load_scales);
+        let mut judge = Judge::new(&request, point.displacement_scale, &point.load_scales);
         let measure = judge.judge_state(&point.increment, &point.stage_ends);
         let Increment { index, stage, load_factor, displacements, contacts, point: kind, .. } = point.increment;
-        let row = CurveRow {
+        accept(CurveRow {
             index,
             place: point.place,
             value: point.value,
@@ -54,10 +52,7 @@ pub fn run(curve: &ParameterCurve, cancel: &CancelFlag, accept: AcceptRow<'_>) -
             codimension_two: point.codimension_two,
             from_path: point.from_path,
             measure,
-        };
-        let answer = accept(&row);
-        rows.push(row);
-        answer
+        })
     };
     let report = CriticalCurve::new(&family, range, cancel.clone()).follow(start, &mut take);
     let CurveReport { end, paths, newton_iterations, .. } = report.map_err(refused)?;
@@ -65,9 +60,7 @@ pub fn run(curve: &ParameterCurve, cancel: &CancelFlag, accept: AcceptRow<'_>) -
         CurveEnd::Complete { below, above } => (Some(told(&below)), Some(told(&above)), true),
         CurveEnd::Cancelled => (None, None, false),
     };
-    let begun = CurveFound::begun(curve.name.clone(), curve.settings.clone(), curve.dimension);
-    let summary = CurveSummary { ends_below, ends_above, paths, newton_iterations, complete };
-    Ok(begun.with(rows, Some(summary)))
+    Ok(CurveSummary { ends_below, ends_above, paths, newton_iterations, complete })
 }
 
 fn refused(failure: CurveFailure) -> InputErrors {

@@ -275,6 +275,15 @@ class Resource:
         self.client.read("DELETE", self.address)
         self.record = {**self.record, "status": "deleted"}
 
+    def _pages_of_rows(self) -> Iterator[Dict[str, Any]]:
+        after = ""
+        while True:
+            page = self.client.get(f"{self.address}/rows{after}")
+            yield from page["rows"]
+            if not page["rows"]:
+                return
+            after = f"?after={page['next_after']}"
+
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.id}: {self.record['status']}>"
 
@@ -369,14 +378,7 @@ class Sweep(Resource):
 
     def rows(self) -> List[Dict[str, Any]]:
         """The runs that have ended, in their order: `values`, `stop_reason`, `first_limit`, `responses` and so on."""
-        rows: List[Dict[str, Any]] = []
-        after = ""
-        while True:
-            page = self.client.get(f"{self.address}/rows{after}")
-            if not page["rows"]:
-                return sorted(rows, key=lambda row: row["run"])
-            rows += page["rows"]
-            after = f"?after={page['next_after']}"
+        return sorted(self._pages_of_rows(), key=lambda row: row["run"])
 
     def to_frame(self) -> Any:
         """The runs as a table of pandas, with a column for each parameter and each response, and the first limit point of each
@@ -417,14 +419,7 @@ class Curve(Resource):
 
     def rows(self) -> List[Dict[str, Any]]:
         """The points found so far, in order along the curve: `value`, `load_factor`, `kind`, `displacements`, `event` and so on."""
-        rows: List[Dict[str, Any]] = []
-        after = ""
-        while True:
-            page = self.client.get(f"{self.address}/rows{after}")
-            if not page["rows"]:
-                return sorted(rows, key=lambda row: row["place"])
-            rows += page["rows"]
-            after = f"?after={page['next_after']}"
+        return sorted(self._pages_of_rows(), key=lambda row: row["place"])
 
     def to_frame(self) -> Any:
         """The points as a table of pandas: `value`, `load_factor`, `kind`, `codimension_two`, `event`, and the displacements in

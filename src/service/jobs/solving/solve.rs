@@ -164,7 +164,7 @@ fn curve(
     };
     let mut failed = None;
     let found = solver.curve(&curve, cancel, &mut |row| {
-        let body = match serde_json::to_string(row) {
+        let body = match serde_json::to_string(&row) {
             Ok(body) => body,
             Err(error) => {
                 failed = Some(SolveEnd::Unwritable(error.to_string()));
@@ -187,7 +187,7 @@ fn curve(
     });
     match (failed, found) {
         (Some(failed), _) => failed,
-        (None, Ok(found)) => found.summary.map_or(SolveEnd::Silent, SolveEnd::Curved),
+        (None, Ok(summary)) => SolveEnd::Curved(summary),
         (None, Err(_)) if cancel.is_cancelled() => SolveEnd::Cancelled,
         (None, Err(errors)) => SolveEnd::NoCurve(errors),
     }

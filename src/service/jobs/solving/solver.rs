@@ -6,7 +6,7 @@ use crate::continuation::scene::Scene;
 use crate::model::{InputError, InputErrors, JobRequest, ParameterCurve, StudyRequest};
 use crate::resources::cancel::CancelFlag;
 use crate::result::plan::Plan;
-use crate::studies::critical_curves::{self, CurveFound, CurveRow};
+use crate::studies::critical_curves::{self, CurveRow, CurveSummary};
 use crate::studies::error_against_time::{self, StudyRun};
 use std::ops::ControlFlow;
 
@@ -100,8 +100,8 @@ pub trait Solver: Send + Sync + 'static {
         &self,
         curve: &ParameterCurve,
         cancel: &CancelFlag,
-        accept: &mut dyn FnMut(&CurveRow) -> ControlFlow<()>,
-    ) -> Result<CurveFound, InputErrors> {
+        accept: &mut dyn FnMut(CurveRow) -> ControlFlow<()>,
+    ) -> Result<CurveSummary, InputErrors> {
         critical_curves::run(curve, cancel, accept)
     }
 }

@@ -1,10 +1,9 @@
 // A curve: the load at limit points against a number of the model, smooth and nonsmooth ones apart, with the points where the
 // curve changes, and how it ends.
 
-import { FindingsView } from "./findings-view.js";
 import { element, fill, table } from "./dom.js";
-import { allRows } from "./findings-rows.js";
 import { axis, colourOf } from "./plot-style.js";
+import { RowsView } from "./rows-view.js";
 import { placeWords } from "./sweep-values.js";
 import { kindWords, short, verbatim } from "./words.js";
 
@@ -13,29 +12,13 @@ const AGAIN = 300;
 /** Points that stand in the table; the others are in the files. */
 const LISTED = 500;
 
-export class CurveView extends FindingsView {
+export class CurveView extends RowsView {
   constructor(section, told) {
     super(section, told, { kind: "curve", place: "/v1/curves", title: "Limit points", pause: AGAIN });
-    this.rows = [];
-  }
-
-  async load(place, signal) {
-    this.rows = [];
-    await super.load(place, signal);
-    return allRows(place, signal, (rows) => this.rows.push(...rows));
-  }
-
-  come(rows) {
-    this.rows.push(...rows);
-    this.record.progress.points = this.rows.length;
-  }
-
-  hasFindings() {
-    return this.rows.length > 0;
   }
 
   progressWords() {
-    return `${this.record.progress.points} points.`;
+    return `${this.rows.length} ${this.rows.length === 1 ? "point" : "points"}.`;
   }
 
   remark() {
@@ -49,7 +32,7 @@ export class CurveView extends FindingsView {
     const parameter = placeWords(this.record.plan.curve.parameter);
     const changes = rows.filter((row) => row.codimension_two);
     this.words.textContent = `The load factor at the limit point. ${changes.length
-      ? "Rings: the limit point changes its kind there, or the path to it its changes of contact." : ""}`;
+      ? "Rings: the limit point changes its kind, or the path comes to it by other contact changes." : ""}`;
     const traces = ["smooth_limit", "nonsmooth_limit"].map((kind, place) => ({
       type: "scatter", mode: "lines+markers", name: kindWords(kind), connectgaps: false,
       x: rows.map(({ value }) => value),

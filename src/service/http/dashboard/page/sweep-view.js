@@ -2,9 +2,8 @@
 // paths can be drawn over one another.
 
 import { button, element, fill, table } from "./dom.js";
-import { allRows } from "./findings-rows.js";
-import { FindingsView } from "./findings-view.js";
 import { axis, colourOf } from "./plot-style.js";
+import { RowsView } from "./rows-view.js";
 import { addressOfJob, openJobs } from "./state.js";
 import { placeWords, valueWords } from "./sweep-values.js";
 import { plainWords, short, verbatim } from "./words.js";
@@ -16,30 +15,14 @@ const OVERLAID = 40;
 /** Runs that stand in the table; the others are in the files. */
 const LISTED = 500;
 
-export class SweepView extends FindingsView {
+export class SweepView extends RowsView {
   constructor(section, told) {
     super(section, told, { kind: "sweep", place: "/v1/sweeps", title: "Limit loads", pause: AGAIN });
-    this.rows = [];
-  }
-
-  async load(place, signal) {
-    this.rows = [];
-    await super.load(place, signal);
-    return allRows(place, signal, (rows) => this.rows.push(...rows));
-  }
-
-  come(rows) {
-    this.rows.push(...rows);
-    this.record.progress.ended = this.rows.length;
-  }
-
-  hasFindings() {
-    return this.rows.length > 0;
   }
 
   progressWords() {
     const { progress } = this.record;
-    return `${progress.ended} of ${progress.of} runs have ended.`;
+    return `${this.rows.length} of ${progress.of} runs have ended.`;
   }
 
   async drawFindings() {
