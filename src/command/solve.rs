@@ -3,7 +3,8 @@
 use crate::command::options::{bounds, input};
 use crate::command::output::outcome::{Failure, Outcome};
 use crate::command::output::path_file::{Format, PathFile};
-use crate::command::output::written::{folders_exist, is_standard_output, is_svg, one_on_standard_output, write};
+use crate::command::output::picture_file::PictureFile;
+use crate::command::output::written::{folders_exist, is_standard_output, one_on_standard_output};
 use crate::model::{JobRequest, Model};
 use crate::resources::cancel::CancelFlag;
 use crate::result::increment::Increment;
@@ -13,7 +14,7 @@ use crate::studies::picture::path::{Against, svg};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Trace the path of a model.
@@ -27,7 +28,7 @@ pub struct Arguments {
     /// Default: what the extension of `--out` says, `ndjson` where it has none.
     #[arg(long, value_enum)]
     format: Option<Format>,
-    /// Draw load factor against a displacement here, as an SVG; `-` is standard output.
+    /// Draw load factor against a displacement here, as SVG or PNG by the extension; `-` is standard output.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
     /// The displacement to draw, such as `tip.x`. Default: the largest one.
@@ -41,7 +42,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let results = [("--out", Some(arguments.out.as_path())), ("--plot", arguments.plot.as_deref())];
     one_on_standard_output(&results)?;
     folders_exist(&results)?;
-    is_svg("--plot", arguments.plot.as_deref())?;
+    let picture_file = PictureFile::of("--plot", arguments.plot.as_deref())?;
     let format = Format::of(arguments.format, &arguments.out)?;
     let request = arguments.model.read()?;
     // Checked before the file is opened, so that a mistake does not overwrite an earlier result.
@@ -50,7 +51,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if request.analysis.explore.is_some() {
         eprintln!("explore: the directions not taken are followed by `arcslip serve` only; this traces one path");
     }
-    let mut picture = Picture::planned(arguments, &request)?;
+    let mut picture = Picture::planned(picture_file, arguments.against.as_deref(), &request)?;
     let mut writer = PathFile::open(&arguments.out, format, &request)?;
     let progress = progress_bar(request.analysis.max_increments, !is_standard_output(&arguments.out));
     let mut unwritten = None;
@@ -110,27 +111,32 @@ fn progress_bar(max_increments: u64, to_file: bool) -> ProgressBar {
 
 /// A picture that is drawn when the path has ended, as the largest displacement is only known then.
 struct Picture<'a> {
-    file: &'a Path,
+    file: PictureFile<'a>,
     against: Option<Against>,
     increments: Vec<Increment>,
 }
 
 impl<'a> Picture<'a> {
-    fn planned(arguments: &'a Arguments, request: &JobRequest) -> Result<Option<Self>, Failure> {
-        let against = arguments.against.as_deref().map(|text| Against::read(text, &request.model)).transpose();
-        let against = against.map_err(|error| Failure::Input(vec![error.to_string()]))?;
+    fn planned(
+        file: Option<PictureFile<'a>>,
+        against: Option<&str>,
+        request: &JobRequest,
+    ) -> Result<Option<Self>, Failure> {
+        let Some(file) = file else { return Ok(None) };
+        let against = against.map(|text| Against::read(text, &request.model)).transpose();
+        let against = against.map_err(|error| Failure::Input(vec![format!("--against {error}")]))?;
         let recorded = request.analysis.record.as_ref().and_then(|record| record.nodes.as_ref());
-        if let (Some(_), Some(nodes)) = (&arguments.plot, recorded)
+        if let Some(nodes) = recorded
             && !against.as_ref().map_or(!nodes.is_empty(), |against| nodes.contains(&against.node))
         {
             let what = "/analysis/record/nodes: the displacement to be drawn is not recorded; add its node";
             return Err(Failure::Input(vec![what.to_owned()]));
         }
-        Ok(arguments.plot.as_deref().map(|file| Self { file, against, increments: Vec::new() }))
+        Ok(Some(Self { file, against, increments: Vec::new() }))
     }
 
     fn write(self, model: &Model) -> Result<(), Failure> {
         let svg = svg(model, &self.increments, self.against).map_err(Failure::other)?;
-        write(self.file, &svg)
+        self.file.write(&svg)
     }
 }

@@ -47,10 +47,58 @@ pub struct Increment {
     /// Whether the state is stable; where `analysis.record.stability` asks for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stability: Option<Stability>,
+    /// Where the other kind of motion leads; at a jump, where `analysis.jump_motion.compare` asks for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub other_motion: Option<Box<OtherMotion>>,
     /// Energies from the start of the path.
     pub energy: Energy,
     /// Accuracy of this point, and work from the start of the path.
     pub diagnostics: Diagnostics,
+}
+
+/// The forces that resist the motion of a jump. `overdamped`: damping alone, the motion goes down the potential energy and
+/// stops at the first state at rest on its way; `inertial`: mass and damping, the motion may pass states at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum JumpMotionKind {
+    /// Damping alone.
+    #[default]
+    Overdamped,
+    /// Mass and damping.
+    Inertial,
+}
+
+impl JumpMotionKind {
+    /// The name in the JSON contract.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Overdamped => "overdamped",
+            Self::Inertial => "inertial",
+        }
+    }
+}
+
+/// The other kind of motion from the state from which a structure jumped, beside the one of the path.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct OtherMotion {
+    #[allow(missing_docs)]
+    pub kind: JumpMotionKind,
+    /// Time steps it took.
+    pub time_steps: u64,
+    /// Whether it came to rest in a stable state of equilibrium.
+    pub at_rest: bool,
+    /// Why it did not come to rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
+    /// Largest distance of a node between the two states at rest (length); absent where it did not come to rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub distance: Option<f64>,
+    /// Energy given off in this motion (force times length).
+    pub released: f64,
+    /// Energy dissipated by friction in this motion (force times length).
+    pub dissipated: f64,
 }
 
 /// A contact at an increment.

@@ -197,6 +197,7 @@ fn increment(index: u64, run: u64) -> Increment {
         },
         directions: None,
         stability: None,
+        other_motion: None,
         energy: Energy { external_work: along, strain: 0.6 * along, dissipated: 0.4 * along, released: 0.0 },
         diagnostics: Diagnostics { elapsed_s: run as f64, ..Diagnostics::default() },
     }

@@ -94,7 +94,9 @@ async fn addresses_and_methods() {
     for path in ["/nothing", "/v1", "/v1/jobs/", "/docs/nothing", "/v1/scenes/nothing"] {
         problem(server.ask(Method::GET, path), 404, "not-found").await;
     }
-    for path in ["", "/increments", "/stream", "/path.csv", "/results.pvd", "/results.parquet"] {
+    for path in
+        ["", "/increments", "/stream", "/path.csv", "/results.pvd", "/results.parquet", "/picture.svg", "/picture.png"]
+    {
         problem(server.ask(Method::GET, &format!("/v1/jobs/{unknown}{path}")), 404, "not-found").await;
     }
     problem(server.ask(Method::POST, &format!("/v1/jobs/{unknown}/cancel")), 404, "not-found").await;

@@ -130,6 +130,7 @@ async fn recorded(folder: &Path) -> Map<String, Value> {
         ("get_columns", "/columns?of=load_factor,/point/kind&limit=3"),
         ("get_exact_path", "/exact"),
         ("get_path_csv", "/path.csv"),
+        ("get_path_picture", "/picture.svg"),
     ] {
         all.get(&server, operation, &format!("{of_job}{rest}")).await;
     }

@@ -1,5 +1,8 @@
 //! The picture that `arcslip solve --plot` draws.
 
+use crate::common::server::TestServer;
+use crate::common::service::scene;
+use arcslip::service::jobs::PathSolver;
 use roxmltree::Document;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -177,9 +180,47 @@ fn extensions_say_the_format_and_unknown_ones_are_refused_before_anything_is_tra
     for (name, more, told_of) in [
         ("path.xlsx", &[][..], "the extension `xlsx` names no format"),
         ("nowhere/path.csv", &[], "--out: there is no folder"),
-        ("other.csv", &["--plot", "picture.png"], "pictures are SVG"),
+        (
+            "other.csv",
+            &["--plot", "picture.jpeg"],
+            "the extension `jpeg` names no format of a picture; `svg` and `png` do",
+        ),
     ] {
         let (status, told, written) = run(name, more);
         assert!(status == Some(2) && told.contains(told_of) && written.is_none(), "{name}: {told}");
+    }
+}
+
+/// The signature of a PNG file, and its width and height.
+fn size_of_png(bytes: &[u8]) -> [u32; 2] {
+    assert_eq!(bytes[..8], *b"\x89PNG\r\n\x1a\n");
+    [16, 20].map(|from| u32::from_be_bytes(bytes[from..from + 4].try_into().expect("four bytes")))
+}
+
+#[tokio::test]
+async fn the_service_draws_the_same_pictures() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let server = TestServer::start(&folder.path().join("jobs.db"), PathSolver).await;
+    let id = server.submit(&scene("klarbring")).await;
+    let job = server.ended(&id).await;
+    let place = job["links"]["picture"].as_str().expect("a place").to_owned();
+    let drawn = async |place: &str| server.get(place).await.bytes().await.expect("a body").to_vec();
+    let file = folder.path().join("picture.png");
+    for (asked, more) in [("", &[][..]), ("?against=node.y", &["--against", "node.y"])] {
+        assert_eq!(drawn(&format!("{place}{asked}")).await, picture("klarbring", more).into_bytes());
+        solve("klarbring", &file, more);
+        let pixels = drawn(&format!("{}{asked}", place.replace(".svg", ".png"))).await;
+        assert_eq!(pixels, std::fs::read(&file).expect("a picture"));
+        assert_eq!(size_of_png(&pixels)[0], 2 * 1040);
+    }
+    for (wrong, told) in [
+        ("?against=node.q", "against: `node.q`: the model has no such displacement (NODE.COMPONENT)"),
+        ("?against=", "against"),
+        ("?node=p", "there is no parameter `node`"),
+    ] {
+        let answer = server.get(&format!("{place}{wrong}")).await;
+        let status = answer.status();
+        let answer: serde_json::Value = answer.json().await.expect("JSON");
+        assert!(status == 400 && answer["detail"].as_str().expect("text").contains(told), "{wrong}: {answer}");
     }
 }

@@ -35,8 +35,9 @@ async fn a_finished_job_is_sent_once() {
     let server = TestServer::start(&folder.path().join("jobs.db"), solver.clone()).await;
     let id = server.submit(&request("held", 6)).await;
     server.until(&id, |job| job["progress"]["increments"] == 2).await;
-    let parts = ["", "/increments", "/increments?after=2&limit=2", "/path.csv", "/results.pvd", "/results.parquet"];
-    let places = parts.map(|part| format!("/v1/jobs/{id}{part}"));
+    let files = ["/path.csv", "/results.pvd", "/results.parquet", "/picture.svg", "/picture.png"];
+    let parts = [&["", "/increments", "/increments?after=2&limit=2"], &files[..]].concat();
+    let places: Vec<String> = parts.iter().map(|part| format!("/v1/jobs/{id}{part}")).collect();
     for place in &places[..3] {
         let answer = server.get(place).await;
         assert!(!answer.headers().contains_key("etag"), "{place}: what still grows has no tag");

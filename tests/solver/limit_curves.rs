@@ -138,8 +138,8 @@ fn the_limit_point_of_the_arch_becomes_smooth_at_its_critical_friction() {
 #[test]
 fn a_change_is_passed_by_a_path_of_many_short_steps() {
     let mut request = arch(1.05);
-    (request.analysis.arc_length.initial, request.analysis.arc_length.max) = (0.004, 0.004);
-    request.analysis.max_increments = 2_000;
+    (request.analysis.arc_length.initial, request.analysis.arc_length.max) = (0.01, 0.01);
+    request.analysis.max_increments = 5_000;
     let settings = json!({"parameter": "/model/contacts/0/friction", "range": [1, 1.1], "step": 0.05});
     let found = followed(&curve_of(&request, &settings).expect("a curve")).expect("a curve");
     assert_eq!(ended(&found).ends_below.as_deref(), Some("the end of the range is reached"));

@@ -133,6 +133,7 @@ mod tests {
             point: Point { kind, bifurcation, event, better_direction, unexplored_modes, degenerate },
             directions: Some(directions),
             stability: None,
+            other_motion: None,
             energy: Energy::default(),
             diagnostics: Diagnostics::default(),
         }

@@ -1,7 +1,8 @@
 //! Writes the findings of `study`, `sweep` and `continue` in the selected format, and shows their progress.
 
 use crate::command::output::outcome::Failure;
-use crate::command::output::written::{folders_exist, is_svg, one_on_standard_output, write};
+use crate::command::output::picture_file::PictureFile;
+use crate::command::output::written::{folders_exist, one_on_standard_output, write};
 use crate::studies::picture::findings::Findings;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
@@ -15,7 +16,7 @@ pub struct Written {
     out: PathBuf,
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-    /// Draw the picture to this file, as SVG; `-` is standard output.
+    /// Draw the picture to this file, as SVG or PNG by its extension; `-` is standard output.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
 }
@@ -34,11 +35,11 @@ impl Written {
     /// Checks the output files before anything is traced.
     ///
     /// # Errors
-    /// Two outputs have the same file, or the folder of a file does not exist.
+    /// Two outputs have the same file, the folder of a file does not exist, or the extension of a picture is unknown.
     pub fn check(&self) -> Result<(), Failure> {
         let places = [("--out", Some(self.out.as_path())), ("--plot", self.plot.as_deref())];
         folders_exist(&places)?;
-        is_svg("--plot", self.plot.as_deref())?;
+        self.picture()?;
         one_on_standard_output(&places)
     }
 
@@ -51,10 +52,14 @@ impl Written {
             Format::Json => serde_json::to_string_pretty(findings).map(|text| text + "\n"),
         };
         write(&self.out, &text.map_err(Failure::other)?)?;
-        match &self.plot {
-            Some(file) => write(file, &findings.svg().map_err(Failure::other)?),
+        match self.picture()? {
+            Some(file) => file.write(&findings.svg().map_err(Failure::other)?),
             None => Ok(()),
         }
+    }
+
+    fn picture(&self) -> Result<Option<PictureFile<'_>>, Failure> {
+        PictureFile::of("--plot", self.plot.as_deref())
     }
 }
 

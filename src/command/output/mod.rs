@@ -3,4 +3,5 @@
 pub(crate) mod findings;
 pub(crate) mod outcome;
 pub(crate) mod path_file;
+pub(crate) mod picture_file;
 pub(crate) mod written;

@@ -33,17 +33,6 @@ pub fn extension(place: &Path) -> Option<String> {
     place.extension().map(|extension| extension.to_string_lossy().to_lowercase())
 }
 
-/// Refuses a picture whose extension promises another format than SVG.
-pub fn is_svg(option: &str, place: Option<&Path>) -> Result<(), Failure> {
-    match place.and_then(extension) {
-        Some(other) if other != "svg" => Err(Failure::Input(vec![format!(
-            "{option}: pictures are SVG; found the extension `{other}`, give `svg`, of which other \
-             programs such as rsvg-convert or a browser make a `{other}`"
-        )])),
-        _ => Ok(()),
-    }
-}
-
 /// Refuses two results on standard output, which would be mixed. Each place is the name of an option and its value.
 pub fn one_on_standard_output(results: &[(&str, Option<&Path>)]) -> Result<(), Failure> {
     let there: Vec<&str> =

@@ -5,6 +5,7 @@ mod picture;
 use crate::check::cases::cases;
 use crate::check::verify::case::{Case, CaseRow};
 use crate::command::output::outcome::{Failure, Outcome, say};
+use crate::command::output::picture_file::PictureFile;
 use crate::command::output::written::{is_standard_output, one_on_standard_output, write};
 use crate::model::input::names::suggestion_of_all;
 use std::path::PathBuf;
@@ -21,8 +22,8 @@ pub struct Arguments {
     /// Write the rows to this file as JSON; `-` is standard output, in which case the table goes to standard error.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Draw errors against their tolerances to this file, as SVG; `-` is standard output, in which case the table goes to standard
-    /// error.
+    /// Draw errors against their tolerances to this file, as SVG or PNG by its extension; `-` is standard output, in which case
+    /// the table goes to standard error.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
 }
@@ -30,6 +31,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Outcome {
     let results = [("--json", arguments.json.as_deref()), ("--plot", arguments.plot.as_deref())];
     one_on_standard_output(&results)?;
+    let picture_file = PictureFile::of("--plot", arguments.plot.as_deref())?;
     let taken = results.iter().any(|(_, place)| place.is_some_and(is_standard_output));
     let tell = |text: String| {
         if taken {
@@ -54,8 +56,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if let Some(file) = &arguments.json {
         write(file, &(serde_json::to_string_pretty(&rows).map_err(Failure::other)? + "\n"))?;
     }
-    if let Some(file) = &arguments.plot {
-        write(file, &picture::svg(&rows).map_err(Failure::other)?)?;
+    if let Some(file) = picture_file {
+        file.write(&picture::svg(&rows).map_err(Failure::other)?)?;
     }
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::from(crate::command::output::outcome::FAILED) })
 }

@@ -1,6 +1,5 @@
 //! The motion of a jump: its beginning, the lengths of its time steps, its end at rest.
 
-use crate::continuation::jump::arrival;
 use crate::continuation::jump::held_structure::{Springs, is_damped, length};
 use crate::continuation::jump::time_step::{Moved, NotMoved, TimeStep, TimeStepScene};
 use crate::continuation::jump::tolerances::{
@@ -14,11 +13,10 @@ use crate::continuation::path_state::resumable_state::{Phase, Progress};
 use crate::continuation::path_state::step_factor_rounding::quantised;
 use crate::mechanics::structure::Structure;
 use crate::model::request::{JumpMotion, JumpMotionKind};
-use crate::result::increment::Increment;
 use crate::result::stop_reason::StopReason;
 
 /// What a time step led to.
-enum Advance {
+pub(super) enum Advance {
     Moving,
     AtRest,
     /// The time step is to be shorter, or the state at rest is not there yet.
@@ -26,7 +24,7 @@ enum Advance {
 }
 
 /// Why a path ends within a jump.
-struct JumpEnd(StopReason, Option<NoRest>);
+pub(super) struct JumpEnd(pub StopReason, pub Option<NoRest>);
 
 impl From<StopReason> for JumpEnd {
     fn from(reason: StopReason) -> Self {
@@ -42,14 +40,14 @@ impl From<NoRest> for JumpEnd {
 
 /// Why a motion comes to rest in no stable state.
 #[derive(Clone, Copy)]
-enum NoRest {
+pub(super) enum NoRest {
     MovesAway,
     MaxSteps,
     Unstable,
 }
 
 impl NoRest {
-    fn sentence(self) -> &'static str {
+    pub fn sentence(self) -> &'static str {
         match self {
             Self::MovesAway => "it moves away without end",
             Self::MaxSteps => "it still moves after jump_motion.max_steps time steps",
@@ -58,31 +56,8 @@ impl NoRest {
     }
 }
 
-/// The next row of a path that jumps: a time step, where they are kept, or the state at rest; `None` where the path ends.
-pub(crate) fn next_row(trace: &mut PathTrace<'_>) -> Option<Increment> {
-    let settings = trace.scene.analysis.jump_motion.unwrap_or_default();
-    let mut scene = TimeStepScene::of(trace);
-    loop {
-        let Some(motion) = trace.at.motion.clone() else {
-            trace.end(StopReason::NoEquilibrium);
-            return None;
-        };
-        match step(trace, motion, &settings, &mut scene) {
-            Ok(Advance::AtRest) => return Some(arrival::at_rest(trace, &settings)),
-            Ok(Advance::Moving) if settings.keep_steps => return Some(arrival::moving(trace)),
-            Ok(Advance::Moving | Advance::Again) => {}
-            Err(JumpEnd(reason, why)) => {
-                trace.end(reason);
-                if let Some(why) = why.filter(|_| trace.at.totals.report.stop_reason == reason) {
-                    trace.at.totals.report.sentence = format!("{}: {}", reason.sentence(), why.sentence());
-                }
-                return None;
-            }
-        }
-    }
-}
-
-fn step(
+/// Takes a time step, or comes to rest.
+pub(super) fn advance(
     trace: &mut PathTrace<'_>,
     motion: JumpProgress,
     settings: &JumpMotion,

@@ -26,10 +26,12 @@
 //! | `held_structure` | the structure with the springs of a time step |
 //! | `time_step` | one implicit time step as an equilibrium path |
 //! | `jump_motion` | the motion: its beginning, the lengths of its steps, its end at rest |
-//! | `arrival` | the row of a jump, and the directions at the state at rest |
+//! | `comparison` | the other kind of motion from the same state, on request |
+//! | `rows` | the rows of a jump, and the directions at the state at rest |
 
-pub(crate) mod arrival;
+mod comparison;
 mod held_structure;
-pub(crate) mod jump_motion;
+mod jump_motion;
+pub(crate) mod rows;
 mod time_step;
 mod tolerances;

@@ -5,7 +5,7 @@
 //! iterations.
 
 use crate::continuation::increment::{acceptance, stages, step_control};
-use crate::continuation::jump::jump_motion;
+use crate::continuation::jump::rows;
 use crate::continuation::path::branch_switching;
 use crate::continuation::path::checkpoint::{self, Checkpoint, CheckpointError};
 use crate::continuation::path_state::passed_points::PassedPoint;
@@ -153,7 +153,7 @@ fn increment(trace: &mut PathTrace<'_>) -> Option<Increment> {
         return None;
     }
     if trace.at.motion.is_some() {
-        return jump_motion::next_row(trace);
+        return rows::next_row(trace);
     }
     trace.refer();
     if trace.at.here.rate.is_none() {

@@ -2,6 +2,7 @@
 
 use crate::continuation::path_state::tolerances::FIRST_TIME_STEP;
 use crate::mechanics::problem::state::State;
+use crate::result::increment::JumpMotionKind;
 use serde::{Deserialize, Serialize};
 
 /// A jump under way from a state at rest, at a load that does not yield.
@@ -31,6 +32,26 @@ pub(crate) struct JumpProgress {
     pub raised: f64,
     /// Nothing resists the motion but damping: without the raised load it would stop wherever it is.
     pub is_unresisted: bool,
+    /// Where the other kind of motion leads, once it is known; only where it is asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub other: Option<OtherMotionEnd>,
+}
+
+/// The end of the other kind of motion from the state from which a structure jumps.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct OtherMotionEnd {
+    pub kind: JumpMotionKind,
+    /// Time steps it took.
+    pub steps: u64,
+    /// Displacements at rest; empty where it did not come to rest.
+    pub displacement: Vec<f64>,
+    /// Why it did not come to rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
+    /// Energies given off and dissipated on the way (dimensionless).
+    pub released: f64,
+    pub dissipated: f64,
 }
 
 impl JumpProgress {
@@ -48,6 +69,7 @@ impl JumpProgress {
             rests_below: f64::MAX,
             raised: 0.0,
             is_unresisted: cause == JumpCause::Mechanism,
+            other: None,
         }
     }
 }

@@ -86,6 +86,7 @@ pub(crate) fn increment(scene: &Scene, totals: &Totals, row: &RowSource<'_>) -> 
         point: row.point.clone(),
         directions,
         stability: row.stability,
+        other_motion: None,
         energy: Energy {
             external_work: totals.energy.external_work * energy_unit,
             strain: totals.energy.strain * energy_unit,

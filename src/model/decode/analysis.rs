@@ -102,7 +102,7 @@ const ON_PATH_END: Choices<OnPathEnd> = Choices {
 
 const JUMP_MOTION: Fields = Fields {
     what: "a motion of jumps",
-    known: &["kind", "damping_ratio", "tolerance", "max_steps", "keep_steps"],
+    known: &["kind", "damping_ratio", "tolerance", "max_steps", "keep_steps", "compare"],
     later: &[],
 };
 
@@ -172,12 +172,14 @@ fn jump_motion(input: &Input, mistakes: &mut Mistakes) -> Option<JumpMotion> {
     let tolerance = object.with_default("tolerance", default.tolerance, mistakes, number);
     let max_steps = object.with_default("max_steps", default.max_steps, mistakes, count);
     let keep_steps = object.with_default("keep_steps", default.keep_steps, mistakes, boolean);
+    let compare = object.with_default("compare", default.compare, mistakes, boolean);
     Some(JumpMotion {
         kind: kind?,
         damping_ratio: damping_ratio?,
         tolerance: tolerance?,
         max_steps: max_steps?,
         keep_steps: keep_steps?,
+        compare: compare?,
     })
 }
 

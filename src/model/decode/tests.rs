@@ -253,13 +253,14 @@ fn analysis() -> impl Strategy<Value = Analysis> {
     let certificate = prop_oneof![Just(Certificate::Use), Just(Certificate::Skip)];
     let mpec = certificate.prop_map(|certificate| Mpec { certificate });
     let kind = one_of([JumpMotionKind::Overdamped, JumpMotionKind::Inertial]);
-    let jump_motion = (kind, of(number()), number(), any::<u64>(), any::<bool>()).prop_map(
-        |(kind, damping_ratio, tolerance, max_steps, keep_steps)| JumpMotion {
+    let jump_motion = (kind, of(number()), number(), any::<u64>(), any::<[bool; 2]>()).prop_map(
+        |(kind, damping_ratio, tolerance, max_steps, [keep_steps, compare])| JumpMotion {
             kind,
             damping_ratio,
             tolerance,
             max_steps,
             keep_steps,
+            compare,
         },
     );
     let jumps = (one_of([OnPathEnd::Stop, OnPathEnd::Jump]), of(jump_motion));

@@ -2,6 +2,7 @@
 
 #![warn(missing_docs)]
 
+use crate::result::increment::JumpMotionKind;
 use serde::{Deserialize, Serialize};
 
 /// What happens where no quasi-static continuation exists (`no_direction`), or none that an element resists (`mechanism`). `stop`: the path ends; `jump`: the structure
@@ -47,19 +48,10 @@ pub struct JumpMotion {
     /// of damping and inertia.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub keep_steps: bool,
-}
-
-/// The forces that resist the motion of a jump. `overdamped`: damping alone, the motion goes down the potential energy and
-/// stops at the first state at rest on its way; `inertial`: mass and damping, the motion may pass states at rest.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum JumpMotionKind {
-    /// Damping alone.
-    #[default]
-    Overdamped,
-    /// Mass and damping.
-    Inertial,
+    /// Whether the other kind of motion is followed, too, from the state in which a jump begins: the row of the jump says
+    /// where it leads. The path goes on from where this one leads.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub compare: bool,
 }
 
 fn default_tolerance() -> f64 {
@@ -85,6 +77,7 @@ impl JumpMotion {
             tolerance: default_tolerance(),
             max_steps: default_max_steps(),
             keep_steps: false,
+            compare: false,
         }
     }
 }

@@ -22,8 +22,9 @@ use serde::{Deserialize, Serialize};
 pub use crate::branching::directions::feasible_direction::Selection;
 pub use crate::mechanics::structure::elements::bar::Strain;
 pub use crate::mechanics::structure::elements::solid::shapes::kind::{LockingMend, SolidKind};
+pub use crate::result::increment::JumpMotionKind;
 pub use analysis::{Analysis, ArcLength, Certificate, Events, Explore, LoadSign, Method, Mpec, Regularised};
-pub use jump::{JumpMotion, JumpMotionKind, OnPathEnd};
+pub use jump::{JumpMotion, OnPathEnd};
 pub use record::{
     ContactRange, ElementReference, ForceRange, Record, RecordedContact, RecordedContacts, RecordedElements,
     RecordedSupports,

@@ -30,6 +30,8 @@ fn api() -> OpenApiRouter<Service> {
         .routes(routes!(increments::csv::path_csv))
         .routes(routes!(increments::results::pvd))
         .routes(routes!(increments::results::parquet))
+        .routes(routes!(increments::picture::svg))
+        .routes(routes!(increments::picture::raster))
         .routes(routes!(studies::submit, studies::list))
         .routes(routes!(studies::get, studies::delete))
         .routes(routes!(studies::cancel))

@@ -1,4 +1,4 @@
-//! Pictures, as SVG.
+//! Pictures, as SVG; `raster` makes a PNG of one.
 //!
 //! `result` draws load against displacement, `study` error against run time (or the varied setting), `sweep` limit load against
 //! the varied parameters, `critical_curve` limit load along a curve; `findings` is the common interface of the latter three. `shapes` has the drawing primitives,
@@ -11,6 +11,7 @@ pub mod critical_curve;
 pub mod findings;
 pub(crate) mod labels;
 pub mod path;
+pub(crate) mod raster;
 pub(crate) mod shapes;
 pub mod study;
 pub mod sweep;

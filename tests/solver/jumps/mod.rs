@@ -2,8 +2,10 @@
 
 mod cycles;
 mod random_trusses;
+mod remembered;
 mod snaps;
 mod stability;
+mod truss_in_motion;
 
 use crate::common::paths::typed;
 use crate::common::random::Numbers;

@@ -135,6 +135,25 @@ fn klarbrings_node_jumps_to_the_free_branch() {
     assert!(energy.dissipated > 0.5 && energy.released > 0.1, "it slides, then lifts off: {energy:?}");
 }
 
+/// The tip of the one-bar truss passes under the pin, leaves the floor and comes to rest straight behind the pin: a bar in
+/// tension bears any load. On its way it gives off what the load does and the bar does not store.
+#[test]
+fn the_one_bar_truss_hangs_from_its_pin() {
+    let mut request = under_load("one-bar-truss");
+    request.model.stages[0].until = Some(Until { load_above: Some(0.5), ..Until::default() });
+    for kind in [JumpMotionKind::Overdamped, JumpMotionKind::Inertial] {
+        request.analysis.jump_motion = Some(JumpMotion::of(kind));
+        let (increments, report) = trace(&request);
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+        let (before, after) = jump(&increments);
+        assert_eq!(before.load_factor, after.load_factor);
+        let length = 3.25_f64.sqrt() * (1.0 + after.load_factor);
+        close(after.displacements["tip"][0], length + 1.5, 1e-9, "x");
+        close(after.displacements["tip"][1], 1.0, 1e-9, "y");
+        assert_eq!(after.contacts[0].status, Status::Free);
+    }
+}
+
 /// Half an arch on a rough floor, its crown pressed by a dead load.
 fn arch(friction: f64) -> JobRequest {
     let count = 16;
@@ -195,8 +214,12 @@ fn a_block_slides_to_the_wall_or_away() {
         }
         typed(json!({ "model": model }))
     };
-    let (increments, report) = trace(&request(false));
+    let mut alone = request(false);
+    let (increments, report) = trace(&alone);
     assert_eq!(report.stop_reason, StopReason::NoEquilibrium, "{report:?}");
+    alone.analysis.jump_motion = Some(JumpMotion { compare: true, max_steps: 200, ..JumpMotion::default() });
+    let sentence = trace(&alone).1.sentence;
+    assert!(sentence.contains("neither does an inertial motion come to rest"), "{sentence}");
     close(increments.last().expect("an end").load_factor, 0.5, 1e-12, "load at which it slides");
     let (increments, report) = trace(&request(true));
     assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{report:?}");
@@ -213,7 +236,7 @@ fn line(mut increment: Increment) -> String {
 #[test]
 fn a_jump_is_resumed_bit_for_bit_at_every_row() {
     let mut request = under_load("arch-type-truss");
-    request.analysis.jump_motion = Some(JumpMotion { keep_steps: true, ..JumpMotion::default() });
+    request.analysis.jump_motion = Some(JumpMotion { keep_steps: true, compare: true, ..JumpMotion::default() });
     let scene = Scene::new(&request).expect("a scene");
     let whole: Vec<Increment> = Path::new(&scene, CancelFlag::default()).collect();
     assert!(whole.iter().filter(|one| one.point.kind == PointKind::Motion).count() > 20);
@@ -256,6 +279,41 @@ fn without_friction_both_motions_agree_and_with_friction_they_say_which() {
     let [slow, fast] = [JumpMotionKind::Overdamped, JumpMotionKind::Inertial].map(|kind| at_rest(kind, 0.0));
     for (name, place) in slow.displacements.iter() {
         place.iter().zip(&fast.displacements[&**name]).for_each(|(slow, fast)| close(*slow, *fast, 1e-8, name));
+    }
+}
+
+/// Both motions of one run: without friction they come to rest in one state; with friction and little damping each as in a
+/// run of its own, and the row says how far apart.
+#[test]
+fn both_motions_are_compared_on_request() {
+    let kinds = [JumpMotionKind::Overdamped, JumpMotionKind::Inertial];
+    let at_rest = |kind: JumpMotionKind, friction: f64, damping_ratio: f64, compare: bool| {
+        let mut request = under_load("arch-type-truss");
+        request.model.contacts.iter_mut().for_each(|contact| contact.friction = friction);
+        let damping_ratio = (kind == JumpMotionKind::Inertial).then_some(damping_ratio);
+        request.analysis.jump_motion = Some(JumpMotion { compare, damping_ratio, ..JumpMotion::of(kind) });
+        jump(&trace(&request).0).1.clone()
+    };
+    // The overdamped motion is compared with the inertial one of damping ratio 1.
+    for (friction, damping, compared) in [(0.0, 1.0, &kinds[..]), (0.4, 1.0, &kinds), (0.4, 0.1, &kinds[1..])] {
+        let alone = kinds.map(|kind| at_rest(kind, friction, damping, false));
+        assert!(alone.iter().all(|one| one.other_motion.is_none()));
+        let places = alone[0].displacements.iter().map(|(name, place)| (place, &alone[1].displacements[&**name]));
+        let apart = places.map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
+        for kind in compared {
+            let [own, opposite] = if *kind == kinds[0] { [0, 1] } else { [1, 0] };
+            let both = at_rest(*kind, friction, damping, true);
+            let other = both.other_motion.as_ref().expect("asked for");
+            assert_eq!(both.displacements, alone[own].displacements, "the path's own motion is the same");
+            assert_eq!((other.kind, other.at_rest), (kinds[opposite], true));
+            let distance = other.distance.expect("at rest");
+            close(distance, apart, 1e-15, "of the runs of their own");
+            close(other.released, alone[opposite].energy.released, 1e-14, "energy given off");
+            let event = both.point.event.as_deref().expect("an event");
+            assert!(event.contains(&format!("comes to rest {distance:.3e} away from there")), "{event}");
+        }
+        println!("friction {friction}, damping ratio {damping}: {apart:e} apart");
+        assert!(if friction == 0.0 { apart < 1e-9 } else { damping == 1.0 || apart > 1e-5 });
     }
 }
 

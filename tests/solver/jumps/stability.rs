@@ -2,68 +2,15 @@
 
 use super::flat_truss;
 use super::random_trusses::under_load;
+use super::truss_in_motion::Motion;
 use crate::common::paths::{close, judged, trace, typed};
 use crate::common::random::Numbers;
 use arcslip::model::JobRequest;
-use arcslip::model::request::{Element, Obstacle, StageControl};
+use arcslip::model::request::{Obstacle, StageControl};
 use arcslip::result::increment::{DeadLoadStability, Increment, Instability, PointKind};
 use serde_json::json;
 
-/// A plane truss of bars and springs to the ground on planes: motion against damping alone, by explicit steps.
-struct Motion<'a> {
-    request: &'a JobRequest,
-    load: f64,
-    /// Places of the nodes, in the order of the model.
-    places: Vec<[f64; 2]>,
-}
-
-impl<'a> Motion<'a> {
-    fn from(request: &'a JobRequest, increment: &Increment) -> Self {
-        let nodes = request.model.nodes.iter();
-        let places = nodes.map(|(name, place)| {
-            let moved = &increment.displacements[name.as_str()];
-            [place[0] + moved[0], place[1] + moved[1]]
-        });
-        Self { request, load: increment.load_factor, places: places.collect() }
-    }
-
-    fn node(&self, name: &str) -> usize {
-        self.request.model.nodes.get_index_of(name).expect("a node")
-    }
-
-    /// The forces of elements and loads on the nodes.
-    fn forces(&self) -> Vec<[f64; 2]> {
-        let model = &self.request.model;
-        let mut forces = vec![[0.0; 2]; self.places.len()];
-        for (name, force) in &model.stages[0].forces {
-            let node = self.node(name);
-            (0..2).for_each(|k| forces[node][k] += self.load * force[k]);
-        }
-        for element in &model.elements {
-            match element {
-                Element::Bar { nodes, axial_stiffness, .. } => {
-                    let [first, second] = [self.node(&nodes[0]), self.node(&nodes[1])];
-                    let rest =
-                        (0..2).map(|k| (model.nodes[second][k] - model.nodes[first][k]).powi(2)).sum::<f64>().sqrt();
-                    let along = [0, 1].map(|k| self.places[second][k] - self.places[first][k]);
-                    let length = along[0].hypot(along[1]);
-                    let force = axial_stiffness * (length - rest) / rest;
-                    for k in 0..2 {
-                        forces[first][k] += force * along[k] / length;
-                        forces[second][k] -= force * along[k] / length;
-                    }
-                }
-                Element::Spring { nodes, stiffness, .. } => {
-                    let node = self.node(&nodes[0]);
-                    let moved = [0, 1].map(|k| self.places[node][k] - model.nodes[node][k]);
-                    (0..2).for_each(|k| forces[node][k] -= stiffness[k][0] * moved[0] + stiffness[k][1] * moved[1]);
-                }
-                other => panic!("{other:?}"),
-            }
-        }
-        forces
-    }
-
+impl Motion<'_> {
     /// One explicit step; the contacts keep to their laws.
     fn step(&mut self, length: f64) {
         let model = &self.request.model;
@@ -98,11 +45,11 @@ impl<'a> Motion<'a> {
     }
 
     /// Whether some small disturbance grows by a factor of hundred within so many steps.
-    fn leaves(request: &'a JobRequest, increment: &Increment, numbers: &mut Numbers, steps: usize) -> bool {
+    fn leaves(request: &JobRequest, increment: &Increment, numbers: &mut Numbers, steps: usize) -> bool {
         const SMALL: f64 = 1e-7;
         (0..4).any(|_| {
-            let start = Self::from(request, increment);
-            let mut moving = Self::from(request, increment);
+            let start = Motion::from(request, increment);
+            let mut moving = Motion::from(request, increment);
             for (name, place) in request.model.nodes.keys().zip(&mut moving.places) {
                 let held = request.model.supports.get(name).is_some_and(|held| held.len() == 2);
                 if !held {
@@ -237,6 +184,114 @@ fn a_foot_on_a_belt_flutters_above_a_known_friction() {
     let flutters: Vec<bool> = left.iter().chain(&right).map(|found| *found == Some(Instability::Flutter)).collect();
     assert_eq!(flutters.iter().filter(|flutters| **flutters).count(), 1, "in one sense, above 0.5");
     assert!(flutters[1] || flutters[3]);
+}
+
+/// A column of two stiff links on a belt, H. Ziegler's (Ing.-Arch. 20 (1952) 49) with friction for the force that follows:
+/// the upper end is pinned, springs hold knee and lower end, and a foot carries the lower end through a spring across the
+/// belt.
+struct ColumnOnBelt {
+    friction: f64,
+    /// The belt runs to the right (1) or to the left (-1).
+    sense: f64,
+}
+
+impl ColumnOnBelt {
+    const AXIAL: f64 = 1e5;
+    const KNEE: f64 = 1.0;
+    const END: f64 = 3.0;
+    const FOOT: [f64; 2] = [1e4, 1.7];
+
+    /// The row at which the foot slides.
+    fn slides(&self) -> Increment {
+        let half = 0.5_f64.sqrt();
+        let bar = |nodes: [&str; 2]| json!({"kind": "bar", "nodes": nodes, "axial_stiffness": Self::AXIAL});
+        let request = typed(json!({
+            "model": {
+                "dimension": 2,
+                "nodes": {"pin": [0, 2.0 * half], "knee": [half, half], "end": [0, 0], "foot": [0, 0]},
+                "supports": {"pin": ["x", "y"]},
+                "elements": [
+                    bar(["pin", "knee"]), bar(["knee", "end"]),
+                    {"kind": "spring", "nodes": ["knee"], "stiffness": [[Self::KNEE, 0], [0, Self::KNEE]]},
+                    {"kind": "spring", "nodes": ["end"], "stiffness": [[Self::END, 0], [0, 0]]},
+                    {"kind": "spring", "nodes": ["end", "foot"], "stiffness": [[Self::FOOT[0], 0], [0, Self::FOOT[1]]]},
+                ],
+                "obstacles": {"belt": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}},
+                "contacts": [{"node": "foot", "obstacle": "belt", "friction": self.friction}],
+                "stages": [
+                    {"name": "press", "forces": {"end": [0, -0.2]}, "until": {"load_above": 1}},
+                    {"name": "run", "obstacle_motion": {"belt": [self.sense, 0]}, "until": {"load_above": 1}},
+                ],
+            },
+            "analysis": {"record": {"stability": true}},
+        }));
+        let (increments, report) = trace(&request);
+        let last = increments.last().expect("an end");
+        assert_eq!(last.contacts[0].status, arcslip::result::increment::Status::Slip, "{report:?}");
+        last.clone()
+    }
+
+    /// The instability by the motion itself, `q̈ + K q = 0` over knee, end and the foot along the belt, with mass 1 at each:
+    /// `K` has the friction's `μ` times the pressure's rate beside the elements' stiffnesses.
+    fn by_hand(&self, row: &Increment) -> Option<Instability> {
+        let half = 0.5_f64.sqrt();
+        let at = |name: &str, x: f64, y: f64| [x + row.displacements[name][0], y + row.displacements[name][1]];
+        let (pin, knee, end) = ([0.0, 2.0 * half], at("knee", half, half), at("end", 0.0, 0.0));
+        let mut stiffness = nalgebra::DMatrix::zeros(5, 5);
+        for (from, to, freedoms) in [(pin, knee, [None, Some(0)]), (knee, end, [Some(0), Some(2)])] {
+            let along = [to[0] - from[0], to[1] - from[1]];
+            let length = along[0].hypot(along[1]);
+            let force = Self::AXIAL * (length - 1.0);
+            for (row, column) in (0..2).flat_map(|row| (0..2).map(move |column| (row, column))) {
+                let projection = along[row] * along[column] / length.powi(2);
+                let across = if row == column { 1.0 - projection } else { -projection };
+                let value = Self::AXIAL * projection + force / length * across;
+                for (first, one) in freedoms.iter().enumerate().filter_map(|(place, one)| Some((place, (*one)?))) {
+                    for (second, other) in freedoms.iter().enumerate().filter_map(|(place, one)| Some((place, (*one)?)))
+                    {
+                        stiffness[(one + row, other + column)] += if first == second { value } else { -value };
+                    }
+                }
+            }
+        }
+        (0..2).for_each(|k| stiffness[(k, k)] += Self::KNEE);
+        stiffness[(2, 2)] += Self::END + Self::FOOT[0];
+        stiffness[(3, 3)] += Self::FOOT[1];
+        stiffness[(4, 4)] += Self::FOOT[0];
+        stiffness[(2, 4)] -= Self::FOOT[0];
+        stiffness[(4, 2)] -= Self::FOOT[0];
+        // The pressure falls as the end rises, and with it the force of the belt on the foot.
+        stiffness[(4, 3)] += self.sense * self.friction * Self::FOOT[1];
+        let values: Vec<nalgebra::Complex<f64>> = stiffness.complex_eigenvalues().iter().copied().collect();
+        if values.iter().any(|value| value.im.abs() > 1e-9 * value.re.abs()) {
+            return Some(Instability::Flutter);
+        }
+        values.iter().any(|value| value.re < 0.0).then_some(Instability::Divergence)
+    }
+}
+
+#[test]
+fn a_column_of_two_links_on_a_belt_flutters() {
+    let verdicts = |friction: f64, sense: f64| {
+        let column = ColumnOnBelt { friction, sense };
+        let row = column.slides();
+        let stability = row.stability.expect("asked for");
+        let found = stability.instability;
+        assert_eq!(found, column.by_hand(&row), "friction {friction}, sense {sense}");
+        assert_eq!(stability.negative_eigenvalues, Some(0), "no eigenvalue is real and negative");
+        found == Some(Instability::Flutter)
+    };
+    let (mut steady, mut flutters) = (0.0, 1.0);
+    assert!(!verdicts(0.02, 1.0) && verdicts(flutters, 1.0));
+    for _ in 0..24 {
+        let middle = 0.5 * (steady + flutters);
+        if verdicts(middle, 1.0) { flutters = middle } else { steady = middle }
+    }
+    println!("flutter above a friction of {flutters:.7}");
+    // A belt that runs the other way steadies the column.
+    for tenth in 1..=10 {
+        assert!(!verdicts(0.1 * f64::from(tenth), -1.0));
+    }
 }
 
 #[test]

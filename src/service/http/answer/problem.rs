@@ -209,6 +209,11 @@ impl Problem {
         Self::new(Kind::InvalidParameter, format!("{name}: {detail}"))
     }
 
+    /// What is logged, and none of the caller's business.
+    pub fn internal() -> Self {
+        Self::new(Kind::Internal, "the log of the service has details under the x-request-id of this answer")
+    }
+
     pub fn not_found(what: impl std::fmt::Display) -> Self {
         Self::new(Kind::NotFound, format!("there is no {what}"))
     }
@@ -255,7 +260,7 @@ impl From<JobsError> for Problem {
             JobsError::Store(error) => error.into(),
             JobsError::Task(_) | JobsError::Write(_) => {
                 tracing::error!(%error, "a request failed");
-                Self::new(Kind::Internal, "the log of the service has details under the x-request-id of this answer")
+                Self::internal()
             }
         }
     }
@@ -271,8 +276,19 @@ impl From<StoreError> for Problem {
                 Kind::StorageDamaged,
                 "the database is damaged; no changes are accepted until the operator has restored a backup",
             ),
-            StoreError::Open(_) | StoreError::Refused(_) => {
-                Self::new(Kind::Internal, "the log of the service has details under the x-request-id of this answer")
+            StoreError::Open(_) | StoreError::Refused(_) => Self::internal(),
+        }
+    }
+}
+
+/// What went wrong while the increments of a job were read.
+impl From<std::io::Error> for Problem {
+    fn from(error: std::io::Error) -> Self {
+        match error.downcast::<StoreError>() {
+            Ok(error) => error.into(),
+            Err(error) => {
+                tracing::error!(%error, "stored increments cannot be read");
+                Self::internal()
             }
         }
     }
@@ -332,6 +348,5 @@ pub async fn every_error(request: Request, next: Next) -> Response {
 pub fn from_panic(panic: Box<dyn Any + Send + 'static>) -> Response<Body> {
     let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
     tracing::error!(panic = text, "a call panicked");
-    Problem::new(Kind::Internal, "the log of the service has details under the x-request-id of this answer")
-        .into_response()
+    Problem::internal().into_response()
 }

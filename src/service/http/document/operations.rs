@@ -22,7 +22,7 @@ const QUEUEING: [&str; 6] =
 const QUEUEING_AGAIN: &str = "retry_job";
 
 /// Calls whose answers carry an entity tag once their resource has ended.
-const TAGGED: [&str; 22] = [
+const TAGGED: [&str; 24] = [
     "get_job",
     "get_request",
     "list_increments",
@@ -31,6 +31,8 @@ const TAGGED: [&str; 22] = [
     "get_path_csv",
     "get_results_pvd",
     "get_results_parquet",
+    "get_path_picture",
+    "get_path_picture_png",
     "get_study",
     "get_study_table_csv",
     "get_study_table_txt",
@@ -47,7 +49,7 @@ const TAGGED: [&str; 22] = [
     "get_curve_picture",
 ];
 /// The calls that take the id of a job that has been queued.
-const OF_A_JOB: [&str; 14] = [
+const OF_A_JOB: [&str; 16] = [
     "get_job",
     "get_request",
     "list_increments",
@@ -56,6 +58,8 @@ const OF_A_JOB: [&str; 14] = [
     "get_path_csv",
     "get_results_pvd",
     "get_results_parquet",
+    "get_path_picture",
+    "get_path_picture_png",
     "stream_increments",
     "follow_direction",
     "continue_job",

@@ -95,10 +95,7 @@ impl<F: Findings> FindingsSoFar<F> {
             Ok(svg) => tag::bytes(headers, self.is_finished, [(header::CONTENT_TYPE, "image/svg+xml")], svg),
             Err(PlotError::Drawing(error)) => {
                 tracing::error!(%error, task, %id, "a picture cannot be drawn");
-                Err(Problem::new(
-                    Kind::Internal,
-                    "the log of the service has details under the x-request-id of this answer",
-                ))
+                Err(Problem::internal())
             }
             Err(PlotError::NoErrors | PlotError::NoPoints | PlotError::Empty | PlotError::NothingFound { .. }) => {
                 Err(Problem::not_found(format_args!("picture of {task} {id}: {}", F::NOT_DRAWN)))

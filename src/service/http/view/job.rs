@@ -113,6 +113,8 @@ pub struct Links {
     pub path_csv: String,
     pub results_pvd: String,
     pub results_parquet: String,
+    /// With `png` in the place of `svg` the picture is of pixels.
+    pub picture: String,
 }
 
 impl TryFrom<JobRecord> for Job {
@@ -150,6 +152,7 @@ impl TryFrom<JobRecord> for Job {
                 path_csv: format!("{itself}/path.csv"),
                 results_pvd: format!("{itself}/results.pvd"),
                 results_parquet: format!("{itself}/results.parquet"),
+                picture: format!("{itself}/picture.svg"),
                 itself,
             },
         })

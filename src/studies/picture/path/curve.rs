@@ -10,7 +10,8 @@ use std::sync::Arc;
 pub struct Curve {
     /// The model's name.
     pub title: Option<String>,
-    /// The displacement's name.
+    displacement: Against,
+    /// The displacement's name, with its unit.
     pub against: String,
     pub stages: Vec<StageCurve>,
     /// In order of appearance.
@@ -52,25 +53,23 @@ pub enum EventKind {
 }
 
 impl Curve {
-    pub fn new(model: &Model, against: &Against, increments: &[Increment]) -> Self {
+    /// A curve without points.
+    pub fn new(model: &Model, displacement: Against) -> Self {
         let length = model.units.as_ref().and_then(|units| units.length.as_deref());
-        let unit = if against.is_rotation() { Some("rad") } else { length };
+        let unit = if displacement.is_rotation() { Some("rad") } else { length };
         let unit = unit.map_or_else(String::new, |unit| format!(" [{unit}]"));
-        let mut curve = Self {
-            title: model.name.clone(),
-            against: format!("{against}{unit}"),
-            stages: Vec::new(),
-            events: Vec::new(),
-        };
-        for increment in increments {
-            let Some(displacement) = against.of(increment) else { continue };
-            let at = (displacement, increment.load_factor);
-            if displacement.is_finite() && increment.load_factor.is_finite() {
-                curve.add_point(increment, at);
-                curve.add_event(increment, at);
-            }
+        let against = format!("{displacement}{unit}");
+        Self { title: model.name.clone(), displacement, against, stages: Vec::new(), events: Vec::new() }
+    }
+
+    /// Adds the point of an increment, if it has the displacement.
+    pub fn push(&mut self, increment: &Increment) {
+        let Some(displacement) = self.displacement.of(increment) else { return };
+        let at = (displacement, increment.load_factor);
+        if displacement.is_finite() && increment.load_factor.is_finite() {
+            self.add_point(increment, at);
+            self.add_event(increment, at);
         }
-        curve
     }
 
     pub fn is_empty(&self) -> bool {

@@ -1,7 +1,7 @@
 //! The picture of a path: load factor against one displacement component, its events lettered.
 //!
 //! `curve` extracts the curve from the increments, `legend` explains the letters, `strokes` has lines and marks, `draw` composes
-//! the picture. Called by `solve` alone.
+//! the picture. Called by `command` and `http`.
 
 pub(crate) mod curve;
 pub(crate) mod draw;
@@ -13,7 +13,7 @@ use crate::model::input::names::{quoted, suggestion};
 use crate::model::request::Component;
 use crate::result::increment::Increment;
 use crate::studies::picture::PlotError;
-use curve::Curve;
+pub use curve::Curve;
 use std::collections::BTreeSet;
 
 const COMPONENTS: [Component; 6] =
@@ -30,7 +30,7 @@ pub struct Against {
 
 /// There is no such displacement component.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("--against {}: the model has no such displacement (NODE.COMPONENT){suggestion}", quoted(.asked))]
+#[error("{}: the model has no such displacement (NODE.COMPONENT){suggestion}", quoted(.asked))]
 pub struct UnknownDisplacement {
     asked: String,
     suggestion: String,
@@ -71,32 +71,60 @@ impl std::fmt::Display for Against {
 pub fn svg(model: &Model, increments: &[Increment], against: Option<Against>) -> Result<String, PlotError> {
     let against = match against {
         Some(against) => against,
-        None => farthest(model, increments).ok_or(PlotError::Empty)?,
+        None => {
+            let mut farthest = Farthest::of(model);
+            increments.iter().for_each(|increment| farthest.push(increment));
+            farthest.found().ok_or(PlotError::Empty)?
+        }
     };
-    let curve = Curve::new(model, &against, increments);
+    let mut curve = Curve::new(model, against);
+    increments.iter().for_each(|increment| curve.push(increment));
+    draw_curve(&curve)
+}
+
+/// The picture of a curve as SVG text.
+pub fn draw_curve(curve: &Curve) -> Result<String, PlotError> {
     if curve.is_empty() {
         return Err(PlotError::Empty);
     }
-    draw::draw(&curve).map_err(|error| PlotError::Drawing(error.to_string()))
+    draw::draw(curve).map_err(|error| PlotError::Drawing(error.to_string()))
 }
 
-/// The unsupported component with the largest displacement, the first one among equals.
-fn farthest(model: &Model, increments: &[Increment]) -> Option<Against> {
-    /// By symmetry two nodes may have the same displacement up to rounding, which must not decide between them.
-    const ALIKE: f64 = 1e-9;
-    let is_free = |displacement: &Against| {
-        let held = model.supports.get(&displacement.node);
-        !held.is_some_and(|held| held.contains(&displacement.component))
-    };
-    let mut best: Option<(Against, f64)> = None;
-    // Radians and lengths are not compared: a rotation is drawn where one asks for it.
-    for displacement in all(model).filter(|displacement| !displacement.component.is_rotation()).filter(is_free) {
-        let reach = increments.iter().filter_map(|increment| displacement.of(increment)).fold(0.0, reach);
-        if best.as_ref().is_none_or(|(_, farthest)| reach > farthest * (1.0 + ALIKE)) {
-            best = Some((displacement, reach));
+/// Finds the unsupported component with the largest displacement, the first one among equals.
+#[derive(Debug)]
+pub struct Farthest {
+    /// Each component with its largest displacement so far.
+    reaches: Vec<(Against, f64)>,
+}
+
+impl Farthest {
+    /// Of a model's components. Radians and lengths are not compared: a rotation is drawn where one asks for it.
+    pub fn of(model: &Model) -> Self {
+        let is_free = |displacement: &Against| {
+            let held = model.supports.get(&displacement.node);
+            !held.is_some_and(|held| held.contains(&displacement.component))
+        };
+        let all = all(model).filter(|displacement| !displacement.component.is_rotation()).filter(is_free);
+        Self { reaches: all.map(|displacement| (displacement, 0.0)).collect() }
+    }
+
+    pub fn push(&mut self, increment: &Increment) {
+        for (displacement, farthest) in &mut self.reaches {
+            *farthest = displacement.of(increment).map_or(*farthest, |now| reach(*farthest, now));
         }
     }
-    best.map(|(displacement, _)| displacement)
+
+    pub fn found(self) -> Option<Against> {
+        /// By symmetry two nodes may have the same displacement up to rounding, which must not decide between them.
+        const ALIKE: f64 = 1e-9;
+        let mut best: Option<(Against, f64)> = None;
+        for (displacement, reach) in self.reaches {
+            if best.as_ref().is_none_or(|(_, farthest)| reach > farthest * (1.0 + ALIKE)) {
+                best = Some((displacement, reach));
+            }
+        }
+        best.map(|(displacement, _)| displacement)
+    }
 }
 
 fn reach(farthest: f64, displacement: f64) -> f64 {

@@ -3,7 +3,7 @@
 import { element, fill } from "./dom.js";
 import { jobActions } from "./job-actions.js";
 import { addressOfJob } from "./state.js";
-import { isGoingOn, nameOf, sentence, statusOf, statusWords, stopSentence } from "./words.js";
+import { counted, isGoingOn, nameOf, sentence, statusOf, statusWords, stopSentence } from "./words.js";
 
 export class JobHeading {
   /** Tells `changed()` where the lists are to be read again, `said(words)` what is refused, `titled(words)`. */
@@ -26,7 +26,7 @@ export class JobHeading {
     // The first point, of index 0, is no increment.
     const kept = path.index.filter((index) => index > 0).length;
     const all = path.last() ?? 0;
-    const many = kept === all ? `${all} increments. ` : `${all} increments, ${kept} of them kept. `;
+    const many = kept === all ? `${counted(all, "increment")}. ` : `${counted(all, "increment")}, ${kept} of them kept. `;
     const name = nameOf(job);
     this.told.titled(others ? `${name} and ${others} more` : name);
     fill(this.summary, element("div", { class: "bar" }, element("h2", {}, name),

@@ -3,7 +3,7 @@
 import { element, fill, table } from "./dom.js";
 import { FindingsView } from "./findings-view.js";
 import { axis, colourOf } from "./plot-style.js";
-import { plainWords, short } from "./words.js";
+import { counted, plainWords, short } from "./words.js";
 
 /** Milliseconds between readings of a report that grows. */
 const AGAIN = 700;
@@ -48,7 +48,7 @@ export class StudyView extends FindingsView {
         type: "scatter", mode: "lines+markers", name: order === null ? method : `${method}, order ${order.toFixed(2)}`,
         x: rows.map(({ time, value }) => (isTimed ? time.median_s : value)),
         y: rows.map(({ path_error: error }) => Math.max(error, LEAST_ERROR)),
-        text: rows.map(({ value, increments }) => `${varied} ${short(value)}, ${increments} increments`),
+        text: rows.map(({ value, increments }) => `${varied} ${short(value)}, ${counted(increments, "increment")}`),
         hovertemplate: `${method}: %{text}<br>error %{y:.2e}, %{x:.3g}${isTimed ? " s" : ""}<extra></extra>`,
         line: { color: colourOf(place) },
         marker: { size: 8, symbol: rows.map(({ resolved }) => (resolved ? "circle" : "circle-open")) },

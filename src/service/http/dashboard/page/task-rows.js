@@ -5,7 +5,7 @@ import {
   addressOfCurve, addressOfJob, addressOfStudy, addressOfSweep, change, openCurve, openJob, openStudy, openSweep, state,
 } from "./state.js";
 import { placeWords, runWords } from "./sweep-values.js";
-import { ago, isGoingOn, nameOf, statusOf } from "./words.js";
+import { ago, counted, isGoingOn, nameOf, statusOf } from "./words.js";
 
 /** Sweep id to whether the reader has opened or closed the list of its runs. */
 const openedByHand = new Map();
@@ -48,7 +48,7 @@ function jobRow(job, words = null) {
   const link = within(addressOfJob(job.id), () => openJob(job.id),
     { "data-key": `open ${job.id}`, "aria-current": place === 0 ? "true" : null, title: `job ${job.id}` }, words ?? nameOf(job));
   const branch = job.parent ? `, branch at increment ${job.parent.increment}, direction ${job.parent.direction}` : "";
-  const told = `${increments} increments, ${ago(job.created_at)}${branch}${words ? `, run ${job.sweep.run}` : ""}`;
+  const told = `${counted(increments, "increment")}, ${ago(job.created_at)}${branch}${words ? `, run ${job.sweep.run}` : ""}`;
   const picture = element("span", { class: "thumbnail-place" });
   // A row without its picture is still of use.
   thumbnails.then(({ thumbnail }) => picture.append(thumbnail(job)), () => {});
@@ -74,7 +74,7 @@ function runRows(id, runs, sweep, isSearched) {
   const inOrder = runs.toSorted((a, b) => a.sweep.run - b.sweep.run);
   const shown = state().jobs;
   const all = sweep?.progress.of;
-  const many = all && all > runs.length ? `${runs.length} of ${all} runs` : `${runs.length} run${runs.length === 1 ? "" : "s"}`;
+  const many = all && all > runs.length ? `${runs.length} of ${all} runs` : counted(runs.length, "run");
   const isOpen = isSearched || (openedByHand.get(id) ?? runs.some((job) => shown.includes(job.id)));
   const folded = element("details", { open: isOpen },
     element("summary", {
@@ -113,7 +113,7 @@ export function curveRow(curve) {
   const link = within(addressOfCurve(curve.id), () => openCurve(curve.id),
     { "data-key": `open ${curve.id}`, "aria-current": isChosen ? "true" : null }, nameOf(curve));
   return row(curve, {
-    isChosen, before: element("span", {}), link, told: `${points} points over ${placeWords(curve.plan.curve.parameter)}, ${ago(curve.created_at)}`,
+    isChosen, before: element("span", {}), link, told: `${counted(points, "point")} over ${placeWords(curve.plan.curve.parameter)}, ${ago(curve.created_at)}`,
     done: points, most: of,
   });
 }

@@ -43,6 +43,9 @@ export const pointWords = ({ kind, bifurcation }) =>
   `${kindWords(kind)}${bifurcation && !kind.includes("bifurcation") ? " and bifurcation" : ""}`;
 export const isGoingOn = (job) => job.status === "queued" || job.status === "running";
 
+/** A number of things: `1 increment`, `2 increments`. */
+export const counted = (number, one) => `${number} ${one}${number === 1 ? "" : "s"}`;
+
 /** Words as a sentence. */
 export const sentence = (told) => `${told[0].toUpperCase()}${told.slice(1)}.`;
 export function stopSentence(job) {
@@ -66,14 +69,13 @@ export function settingsSentences(request, plan, defaults) {
   };
   const setting = (name) => of(given, defaults, name);
   const arc = (name) => of(given.arc_length, defaults.arc_length, name);
-  const count = (number, one) => `${number} ${one}${number === 1 ? "" : "s"}`;
   return [
     `Increments are found by the method: ${setting("method")}.`,
     `Where there is a choice of directions, the path takes the one of: ${setting("selection")}.`,
     `Contact changes become points of their own: ${setting("events")}.`,
     `It ends after so many increments at the latest: ${setting("max_increments")}.`,
     `Arc length of an increment: first ${arc("initial")}, at least ${arc("min")}, at most ${arc("max")}.`,
-    plan ? `${count(plan.unknowns, "unknown")}, ${count(plan.contacts, "contact")}, ${count(plan.stages, "stage")}; `
+    plan ? `${counted(plan.unknowns, "unknown")}, ${counted(plan.contacts, "contact")}, ${counted(plan.stages, "stage")}; `
       + `displacements are measured by ${short(plan.displacement_scale)}, forces by ${short(plan.force_scale)}.` : null,
   ].filter(Boolean);
 }
