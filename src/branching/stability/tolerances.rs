@@ -16,6 +16,17 @@ pub(super) const MOST_ITERATIONS: usize = 100;
 /// length, by which the eigenvalue changes in proportion.
 pub(super) const NEUTRAL: f64 = 1e-8;
 
+/// Shifts (dimensionless stiffness) where an eigenvalue is zero: the compliances of the others, with an error of round-off
+/// over the shift, then tell stiffnesses up to 1e12 from those of held motions, and the zero one is as exact as it was.
+pub(super) const SHIFTS: [f64; 4] = [1.37e-3, 2.11e-3, 3.07e-3, 4.79e-3];
+
+/// Largest entry of a matrix times its inverse, less the identity: round-off times the condition number, as far as an
+/// eigenvalue is told from zero.
+pub(super) const INVERSE_ERROR: f64 = 1e-4;
+
+/// Distance of every eigenvalue from a shift, relative to the shift.
+pub(super) const CLEAR_OF_SHIFT: f64 = 1e-3;
+
 /// Imaginary part relative to the size of an eigenvalue up to which it is real: a double eigenvalue comes out as a pair
 /// that differs by the square root of round-off.
 pub(super) const REAL: f64 = 1e-7;

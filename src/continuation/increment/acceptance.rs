@@ -11,7 +11,6 @@ use crate::continuation::path_state::motion::JumpCause;
 use crate::continuation::path_state::path_context::{Emitted, PathTrace};
 use crate::continuation::path_state::resumable_state::{Arriving, Phase};
 use crate::continuation::path_state::tolerances::REACTION_ROUND_OFF;
-use crate::continuation::scene::StageLoad;
 use crate::mechanics::contact::{Mode, Reaction, all_continue};
 use crate::mechanics::problem::natural_residual;
 use crate::result::increment::{Increment, Point, PointKind};
@@ -78,7 +77,7 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
         point.kind = PointKind::End;
         trace.end_at(reason, &arrival.options);
     } else if stage_ends {
-        tell_end_of_stage(&mut point, stage);
+        stages::tell_end(&mut point, stage);
     }
     let reactions = arrived.filter(|arrived| is_anew(trace, arrived));
     trace.note_passed(arrival_rate, &arriving.modes, reached.event, point.kind, stage_ends);
@@ -148,14 +147,6 @@ fn leave_unstable_path(trace: &mut PathTrace<'_>, options: &[DirectionChoice], p
         motion.push.clone_from(&options[branch].rate.displacement);
     }
     None
-}
-
-fn tell_end_of_stage(point: &mut Point, stage: &StageLoad) {
-    if point.kind == PointKind::Regular {
-        point.kind = PointKind::End;
-    }
-    let what = if stage.turns { "the load turns".to_owned() } else { format!("stage \"{}\" ends", stage.name) };
-    point.event = Some(point.event.take().map_or(what.clone(), |event| format!("{event}; {what}")));
 }
 
 /// Whether reactions differ from those with which a step arrived: the contacts of a node may share its force in another

@@ -1,12 +1,14 @@
 //! The beginning and the end of a stage, and the transition to the next.
 
 use crate::branching::directions::feasible_direction::{self, DirectionChoice, PriorMotion};
-use crate::branching::selection::selection_rule;
+use crate::branching::directions::trial_step::later_sign;
+use crate::branching::selection::selection_rule::{self, Decision};
 use crate::continuation::path_state::event_descriptions::describe_start;
 use crate::continuation::path_state::motion::{JumpCause, JumpProgress};
 use crate::continuation::path_state::path_context::{Emitted, PathTrace};
 use crate::continuation::path_state::resumable_state::{Phase, StageCounts};
 use crate::continuation::path_state::visited_states::VisitedStates;
+use crate::continuation::scene::StageLoad;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::state::Rate;
@@ -59,6 +61,9 @@ pub(crate) fn depart(trace: &mut PathTrace<'_>, point: &mut Point) -> (Vec<Direc
     let state = &trace.at.here.state;
     let mut decision =
         selection_rule::decide(trace.loading(), state, &trace.standings(state), PriorMotion::StageStart, trace.rules());
+    if trace.rules().load_rises {
+        rise(trace, &mut decision);
+    }
     trace.take(&mut decision);
     trace.at.begun = trace.at.here.rate.clone().map(|rate| (trace.at.here.state.clone(), rate));
     trace.at.step = trace.at.step.min(trace.scene.analysis.arc_length.initial);
@@ -74,6 +79,21 @@ pub(crate) fn depart(trace: &mut PathTrace<'_>, point: &mut Point) -> (Vec<Direc
         trace.end_at(reason, &decision.options);
     }
     (decision.options, decision.taken)
+}
+
+/// Tells of directions whose load rate is zero at first order, as at a limit point, whether the load rises along them, and
+/// takes one along which it does, if there is one.
+fn rise(trace: &PathTrace<'_>, decision: &mut Decision) {
+    let (loading, state, rules) = (trace.loading(), &trace.at.here.state, trace.rules());
+    for option in decision.options.iter_mut().filter(|option| option.load_sign == 0.0 && !option.mechanism) {
+        option.load_sign = later_sign(loading, state, &option.rate, &option.modes, rules.force_scale).sign;
+    }
+    let falls = |index: usize| decision.options[index].load_sign < 0.0;
+    if let Some(taken) = decision.taken.filter(|taken| falls(*taken)) {
+        let rises = |index: usize| decision.options[index].load_sign > 0.0 && !decision.options[index].mechanism;
+        let rising = selection_rule::preferred(&decision.options, &decision.options[taken].rate, rules, rises);
+        decision.taken = rising.or(decision.taken);
+    }
 }
 
 /// Lets the structure jump from the present point.
@@ -94,6 +114,20 @@ fn bound_is_met(trace: &PathTrace<'_>) -> bool {
     };
     let left = |end: &End| EventFunction::End(*end).value(trace.loading(), &here.modes, &here.state, &still);
     trace.scene.stages[trace.at.stage].ends.iter().any(|end| left(end) <= 0.0)
+}
+
+/// Whether the stage ends at a state at rest to which the structure has jumped: a bound is passed or a count is full.
+pub(crate) fn is_over(trace: &PathTrace<'_>) -> bool {
+    bound_is_met(trace) || trace.at.counts.end_stage(&trace.scene.stages[trace.at.stage].ends)
+}
+
+/// Enters in a point that a stage, or a part of its history, ends there.
+pub(crate) fn tell_end(point: &mut Point, stage: &StageLoad) {
+    if point.kind == PointKind::Regular {
+        point.kind = PointKind::End;
+    }
+    let what = if stage.turns { "the load turns".to_owned() } else { format!("stage \"{}\" ends", stage.name) };
+    point.event = Some(point.event.take().map_or(what.clone(), |event| format!("{event}; {what}")));
 }
 
 /// Keeps the load that the stage reached and begins the next stage; `false` where there is none.

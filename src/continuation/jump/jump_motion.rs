@@ -69,7 +69,7 @@ pub(super) fn advance(
     trace.refer();
     let structure = &trace.scene.structure;
     let speed = length(structure, &motion.velocity);
-    let slows = motion.steps > 0 && speed <= SPEED_AT_REST * motion.largest_speed;
+    let slows = motion.largest_speed > 0.0 && speed <= SPEED_AT_REST * motion.largest_speed;
     if slows && speed <= motion.rests_below {
         return rest(trace, motion, speed, scene);
     }
@@ -101,10 +101,10 @@ pub(super) fn advance(
         Ok(_) | Err(NotMoved::TooLong) => return shorter(trace, 0.25),
         Err(NotMoved::Cancelled) => return Err(StopReason::Cancelled.into()),
     };
-    let velocity = velocity(structure, trace, &moved, motion.time_step);
+    let mut velocity = velocity(structure, trace, &moved, motion.time_step);
     let way = motion.travelled + length(structure, &velocity) * motion.time_step;
-    let starts = motion.velocity.is_empty() && settings.kind == JumpMotionKind::Overdamped;
     let pushed = !motion.push.is_empty() && motion.steps == 0;
+    let starts = motion.velocity.is_empty() && (pushed || settings.kind == JumpMotionKind::Overdamped);
     let change: Vec<f64> = velocity
         .iter()
         .enumerate()
@@ -115,6 +115,10 @@ pub(super) fn advance(
     let factor = quantised((SAFETY / ratio.max(1e-3).sqrt()).clamp(LARGEST_REDUCTION, LARGEST_GROWTH));
     if ratio > ACCEPTED_MULTIPLE {
         return shorter(trace, factor.min(0.5));
+    }
+    if pushed && settings.kind == JumpMotionKind::Inertial {
+        // It is set beside its state and starts from rest there.
+        velocity.fill(0.0);
     }
     let after = JumpProgress {
         steps: motion.steps + 1,

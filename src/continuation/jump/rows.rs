@@ -54,7 +54,7 @@ fn end(trace: &mut PathTrace<'_>, reason: StopReason, why: Option<NoRest>) {
     trace.at.totals.report.sentence.extend(parts.into_iter().flatten());
 }
 
-/// The row of the state at rest, from which the path goes on.
+/// The row of the state at rest, from which the path goes on: within its stage, or with the next where that ends here.
 fn at_rest(trace: &mut PathTrace<'_>, settings: &JumpMotion) -> Increment {
     trace.refer();
     let Some(motion) = trace.at.motion.take() else { return moving(trace) };
@@ -66,6 +66,12 @@ fn at_rest(trace: &mut PathTrace<'_>, settings: &JumpMotion) -> Increment {
     event.extend(other.as_ref().map(|other| format!("; {}", comparison::sentence(other))));
     let mut point = Point::plain(PointKind::Jump, Some(event));
     let modes = trace.at.here.modes.clone();
+    if stages::is_over(trace) {
+        trace.at.stage_over = true;
+        stages::tell_end(&mut point, &trace.scene.stages[trace.at.stage]);
+        let row = emit(trace, &before, &modes, point, (Vec::new(), None));
+        return Increment { other_motion: other.map(Box::new), ..row };
+    }
     let (options, taken) = stages::depart(trace, &mut point);
     if motion.from.distance(&trace.at.here.state) <= SAME_STATE && trace.at.motion.take().is_some() {
         trace.end(StopReason::NoDirection);

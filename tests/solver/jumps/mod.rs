@@ -1,10 +1,12 @@
 //! Jumps to the next state at rest, load control, and whether states are stable.
 
+mod critical_states;
 mod cycles;
 mod random_trusses;
 mod remembered;
 mod snaps;
 mod stability;
+mod stage_ends;
 mod truss_in_motion;
 
 use crate::common::paths::typed;

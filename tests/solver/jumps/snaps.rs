@@ -344,4 +344,13 @@ fn a_perfect_truss_jumps_where_it_loses_its_stability() {
     assert!(after.displacements["top"][1] < -6.0);
     let stability = after.stability.expect("asked for");
     assert_eq!(stability.negative_eigenvalues, Some(0));
+    // With inertia likewise: the push towards a branch is no motion of its own.
+    let mut inertial = request(0.0);
+    for damping_ratio in [0.1, 1.0] {
+        let motion = JumpMotion { damping_ratio: Some(damping_ratio), ..JumpMotion::of(JumpMotionKind::Inertial) };
+        inertial.analysis.jump_motion = Some(motion);
+        let (increments, _) = trace(&inertial);
+        let at_rest = jump(&increments).1;
+        close(at_rest.displacements["top"][1], after.displacements["top"][1], 1e-9, "the same state");
+    }
 }
