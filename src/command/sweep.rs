@@ -72,7 +72,7 @@ fn replacement(argument: &str) -> Result<(String, Vec<serde_json::Value>), Strin
 /// A response as a file has it. Its name ends at the first `=`, and the place is a name, or a column and a number.
 fn response(argument: &str) -> Result<(String, serde_json::Value), String> {
     let expected = "NAME=COLUMN@PLACE is expected";
-    let (name, rest) = argument.split_once('=').ok_or(expected)?;
+    let (name, rest) = argument.split_once('=').filter(|(name, _)| !name.is_empty()).ok_or(expected)?;
     let (value, at) = rest.split_once('@').ok_or(expected)?;
     let at = match at.rsplit_once('=') {
         Some((column, number)) => {
@@ -152,10 +152,13 @@ impl Arguments {
             sweep.insert("replace".to_owned(), replace.into());
         }
         if !self.response.is_empty() {
-            sweep.insert(
-                "responses".to_owned(),
-                self.response.iter().cloned().collect::<serde_json::Map<_, _>>().into(),
-            );
+            let mut responses = serde_json::Map::new();
+            for (name, response) in &self.response {
+                if responses.insert(name.clone(), response.clone()).is_some() {
+                    return Err(Failure::Input(vec![format!("--response: two of them have the name `{name}`")]));
+                }
+            }
+            sweep.insert("responses".to_owned(), responses.into());
         }
         if let Some(refine) = self.refine {
             sweep.insert("refine".to_owned(), refine.into());

@@ -10,7 +10,7 @@ use crate::model::JobRequest;
 use crate::model::request::recorded_forces::{element_label, recorded_elements, recorded_supports};
 use crate::model::request::{Contact, Element, Record};
 use crate::output::csv::{Cells, ChosenCells, CsvRow};
-use crate::result::increment::{Diagnostics, Increment, PointKind, Status};
+use crate::result::increment::{DeadLoadStability, Diagnostics, Increment, Instability, PointKind, Status};
 use serde_json::Value;
 use std::collections::HashSet;
 
@@ -25,7 +25,12 @@ pub struct Table {
     elements: Vec<ElementColumns>,
     /// Nodes with recorded reactions of their supports.
     supports: Vec<NodeColumns>,
+    /// Whether the stability of increments is recorded.
+    has_stability: bool,
 }
+
+/// Names of the columns of stability, the last ones.
+const OF_STABILITY: [&str; 3] = ["stability.negative_eigenvalues", "stability.dead_load", "stability.instability"];
 
 #[derive(Debug, Clone)]
 struct ElementColumns {
@@ -147,6 +152,7 @@ impl Table {
             contacts: contacts.map(columns).collect(),
             elements: recorded_elements(request).into_iter().map(element).collect(),
             supports: recorded_supports(request).into_iter().map(node_columns).collect(),
+            has_stability: record.is_some_and(|record| record.stability),
         }
     }
 
@@ -190,6 +196,9 @@ impl Table {
         names.extend(["elapsed_s", "residual", "complementarity", "energy_error", "error_estimate"].map(str::to_owned));
         names.extend(counts(&Diagnostics::default()).map(|(name, _)| name.to_owned()));
         names.extend(Errors::NAMES.map(|name| format!("measure.{name}")));
+        if self.has_stability {
+            names.extend(OF_STABILITY.map(str::to_owned));
+        }
         names
     }
 
@@ -285,6 +294,12 @@ impl Table {
             line.count(count);
         }
         line.numbers(measure.map(Errors::values).as_ref().map_or(&[], <[f64; _]>::as_slice), Errors::NAMES.len());
+        if self.has_stability {
+            let stability = increment.stability;
+            line.optional(stability.and_then(|found| found.negative_eigenvalues).map(|count| count as f64));
+            line.word(stability.map_or("", |found| dead_load(found.dead_load)));
+            line.word(stability.and_then(|found| found.instability).map_or("", instability));
+        }
     }
 }
 
@@ -300,6 +315,21 @@ pub(crate) fn counts(diagnostics: &Diagnostics) -> [(&'static str, u64); 8] {
         ("mpec_fallbacks", diagnostics.mpec_fallbacks),
         ("bifurcation_factorisations", diagnostics.bifurcation_factorisations),
     ]
+}
+
+fn dead_load(stability: DeadLoadStability) -> &'static str {
+    match stability {
+        DeadLoadStability::Stable => "stable",
+        DeadLoadStability::Unstable => "unstable",
+        DeadLoadStability::Unknown => "unknown",
+    }
+}
+
+fn instability(instability: Instability) -> &'static str {
+    match instability {
+        Instability::Divergence => "divergence",
+        Instability::Flutter => "flutter",
+    }
 }
 
 pub(crate) fn status(status: Status) -> &'static str {

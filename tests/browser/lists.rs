@@ -115,6 +115,30 @@ async fn runs_stand_under_their_sweep_and_are_named_by_their_values() {
 }
 
 #[tokio::test]
+async fn a_sweep_shows_its_responses() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let mut request = scene("one-bar-truss");
+    request["sweep"] = json!({
+        "replace": {"/model/contacts/0/friction": [0.1, 0.2, 0.4]},
+        "responses": {"tip": {"value": "tip.x", "at": "first_limit"}, "at last": {"value": "tip/floor.status", "at": "end"}},
+    });
+    let id = process::submit(&served.client, served.url(), "/v1/sweeps", &request).await;
+    process::until(&served.client, served.url(), &format!("/v1/sweeps/{id}"), process::has_ended).await;
+    browser.visit(&format!("{}/?sweep={id}", served.url())).await;
+    browser.until("document.getElementById('sweep-plot')?.data?.[0].x.length === 3").await;
+    let drawn = browser.ask("document.getElementById('sweep-plot').data[0].y").await;
+    let rows = served.get(&format!("/v1/sweeps/{id}/rows")).await;
+    let rows = rows["rows"].as_array().expect("rows");
+    let found = |run: usize| &rows.iter().find(|row| row["run"] == run).expect("a run")["responses"];
+    assert_eq!(drawn, json!([found(0)["tip"], found(1)["tip"], found(2)["tip"]]));
+    let table = browser.ask("document.querySelector('#sweep table').textContent").await;
+    let table = table.as_str().expect("text");
+    assert!(table.contains("at last") && table.contains(found(0)["at last"].as_str().expect("a status")), "{table}");
+    browser.close(served.url(), &[]).await;
+}
+
+#[tokio::test]
 async fn on_a_phone_the_list_is_a_drawer_within_reach() {
     let Some(browser) = Browser::open().await else { return };
     let served = Served::start();

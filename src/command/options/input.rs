@@ -3,6 +3,7 @@
 use crate::check::scenes;
 use crate::command::options::embedded_mesh;
 use crate::command::output::outcome::Failure;
+use crate::model::input::names::nearest;
 use crate::model::{InputErrors, JobRequest, decode};
 use clap::ArgMatches;
 use serde_json::json;
@@ -36,10 +37,14 @@ impl Model {
             Ok(text) => with_mesh(text, Path::new(&self.file)),
             Err(error) if error.kind() == ErrorKind::NotFound => match scenes::find(&self.file) {
                 Some(scene) => Ok(scene.request.as_bytes().to_vec()),
-                None => Err(Failure::Input(vec![format!(
-                    "{}: neither a file nor a built-in scene (`arcslip scenes` lists those)",
-                    self.file
-                )])),
+                None => {
+                    let nearest = nearest(&self.file, scenes::ALL.iter().map(|scene| scene.name));
+                    let meant = nearest.map_or_else(String::new, |name| format!("; did you mean `{name}`?"));
+                    Err(Failure::Input(vec![format!(
+                        "{}: neither a file nor a built-in scene (`arcslip scenes` lists those){meant}",
+                        self.file
+                    )]))
+                }
             },
             Err(error) => Err(unreadable(error)),
         }

@@ -210,7 +210,7 @@ impl Scene {
             force_scale: force,
             load_scales,
             left_out,
-            warnings: warnings::warnings(model),
+            warnings: warnings::warnings(request),
         };
         let no_displacements = still(model);
         let analysis = request.analysis.clone();

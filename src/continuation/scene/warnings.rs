@@ -1,8 +1,9 @@
 //! What is valid in a model and may be a mistake.
 
-use crate::model::Model;
+use crate::model::request::recorded_forces::MAX_FORCES_UNASKED;
 use crate::model::request::{Contact, Element};
 use crate::model::solids::contact_surfaces::ContactSurfaces;
+use crate::model::{JobRequest, Model};
 use crate::result::plan::Warning;
 use std::collections::HashMap;
 
@@ -12,9 +13,11 @@ const LARGEST_USUAL_FRICTION: f64 = 5.0;
 /// Warnings of one kind that are listed.
 const MOST_LISTED: usize = 5;
 
-/// The warnings of a checked model.
-pub(crate) fn warnings(model: &Model) -> Vec<Warning> {
+/// The warnings of a checked request.
+pub(crate) fn warnings(request: &JobRequest) -> Vec<Warning> {
+    let model = &request.model;
     let mut warnings = large_friction(model);
+    warnings.extend(unrecorded_forces(request));
     warnings.extend(doubled_bars(model));
     warnings.extend(overlapping_meshes(model));
     warnings
@@ -30,6 +33,22 @@ fn large_friction(model: &Model) -> Vec<Warning> {
         ),
     };
     large.take(MOST_LISTED).map(warning).collect()
+}
+
+/// Forces that an increment does not have, though nobody has said so.
+fn unrecorded_forces(request: &JobRequest) -> Vec<Warning> {
+    let (model, record) = (&request.model, request.analysis.record.as_ref());
+    let warning = |member: &str, what: &str, count: usize| Warning {
+        pointer: format!("/analysis/record/{member}"),
+        detail: format!(
+            "the forces of {count} {what} are not recorded: of more than {MAX_FORCES_UNASKED} they are where \"all\" or a list of \
+             them asks for them"
+        ),
+    };
+    let elements = record.is_none_or(|record| record.elements.is_none()) && model.elements.len() > MAX_FORCES_UNASKED;
+    let supports = record.is_none_or(|record| record.supports.is_none()) && model.supports.len() > MAX_FORCES_UNASKED;
+    let elements = elements.then(|| warning("elements", "elements", model.elements.len()));
+    elements.into_iter().chain(supports.then(|| warning("supports", "supports", model.supports.len()))).collect()
 }
 
 /// Surfaces whose meshes overlap where they touch at the start.
@@ -64,4 +83,34 @@ fn doubled_bars(model: &Model) -> Vec<Warning> {
         }
     }
     warnings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{MAX_FORCES_UNASKED, warnings};
+    use crate::model::JobRequest;
+    use serde_json::{Map, Value, json};
+
+    /// A row of bars, with `record` in its analysis.
+    fn row_of(bars: usize, record: &Value) -> JobRequest {
+        let nodes: Map<String, Value> = (0..=bars).map(|k| (format!("n{k}"), json!([k as f64, 0.0]))).collect();
+        let bar = |k: usize| json!({"kind": "bar", "nodes": [format!("n{k}"), format!("n{}", k + 1)], "axial_stiffness": 1.0});
+        let model = json!({
+            "dimension": 2, "nodes": nodes, "elements": (0..bars).map(bar).collect::<Vec<Value>>(),
+            "supports": {"n0": ["x", "y"]}, "stages": [{"name": "pull", "forces": {"n1": [1, 0]}, "until": {"load_above": 1}}],
+        });
+        serde_json::from_value(json!({"model": model, "analysis": {"record": record}})).expect("a request")
+    }
+
+    #[test]
+    fn forces_that_nobody_has_asked_for_are_told() {
+        let told = |bars: usize, record: Value| warnings(&row_of(bars, &record)).len();
+        assert_eq!(told(MAX_FORCES_UNASKED, json!({})), 0);
+        let [warning] = &warnings(&row_of(MAX_FORCES_UNASKED + 1, &json!({})))[..] else { panic!("one warning") };
+        assert_eq!(warning.pointer, "/analysis/record/elements");
+        assert!(warning.detail.starts_with("the forces of 201 elements are not recorded"), "{}", warning.detail);
+        for said in [json!("all"), json!("none"), json!([3])] {
+            assert_eq!(told(MAX_FORCES_UNASKED + 1, json!({"elements": said})), 0);
+        }
+    }
 }

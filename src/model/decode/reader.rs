@@ -133,7 +133,9 @@ impl<'a> Input<'a> {
             Some((name, value)) => Input { value, at: self.at.member(name) }.choice(choices, mistakes),
             None => {
                 let names = choices.known.iter().map(|&(name, _)| name);
-                mistakes.add(&self.at, || format!("`kind` is missing; it is {} ({})", choices.what, listed(names)));
+                let is_type = members.iter().any(|(name, _)| name == "type");
+                let found = if is_type { "`kind` is missing, where `type` stands" } else { "`kind` is missing" };
+                mistakes.add(&self.at, || format!("{found}; it is {} ({})", choices.what, listed(names)));
                 None
             }
         }

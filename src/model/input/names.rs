@@ -86,7 +86,7 @@ fn synonym<'a>(unknown: &str, mut known: impl Iterator<Item = &'a str>) -> Optio
 }
 
 /// The most similar name, ignoring case, the first among equals; `None` if no name is similar.
-fn nearest<'a>(unknown: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+pub(crate) fn nearest<'a>(unknown: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let short = |text: &str| text.chars().nth(COMPARED_CHARACTERS).is_none();
     if !short(unknown) {
         return None;

@@ -35,6 +35,15 @@ fn change(one: &Value, other: &Value) -> f64 {
     }
 }
 
+/// The middle of two values, with no more decimals than tell it from them: 0.425 between 0.4 and 0.45, without round-off.
+fn middle(one: f64, other: f64) -> f64 {
+    /// Decimals beyond the first digit of the distance.
+    const DECIMALS: f64 = 9.0;
+    let middle = one + (other - one) / 2.0;
+    let decimals = (DECIMALS - (other - one).log10().floor()).clamp(0.0, 300.0) as usize;
+    format!("{middle:.decimals$}").parse().unwrap_or(middle)
+}
+
 /// The middles of the intervals in which the response changes most, `most` of them or fewer; none where it does not change.
 pub fn further_values(variation: &Variation, rows: &[Row], most: usize) -> Vec<Value> {
     let place = |row: &Row| row.values.first().and_then(Value::as_f64);
@@ -47,7 +56,7 @@ pub fn further_values(variation: &Variation, rows: &[Row], most: usize) -> Vec<V
     let mut intervals: Vec<ParameterInterval> = known
         .windows(2)
         .map(|pair| ParameterInterval {
-            middle: (pair[0].0 + pair[1].0) / 2.0,
+            middle: middle(pair[0].0, pair[1].0),
             width: pair[1].0 - pair[0].0,
             change: change(&pair[0].1, &pair[1].1),
         })
@@ -100,5 +109,11 @@ mod tests {
         let lost = [row(0, 0.0, Some(1.0)), row(1, 1.0, Some(9.0)), row(2, 1.5, None), row(3, 2.0, None)];
         assert_eq!(further_values(&variation, &lost, 1), [json!(1.25)], "a limit load that disappears");
         assert!(further_values(&variation, &rows[..1], 4).is_empty());
+        let close = [row(0, 0.4, Some(1.0)), row(1, 0.45, Some(2.0))];
+        assert_eq!(further_values(&variation, &close, 1), [json!(0.425)]);
+        for (one, other) in [(-3.0, 1e6), (1e-20, 1.1e-20), (1.0, 1.0 + 1e-12), (-2e300, 1e300)] {
+            let middle = middle(one, other);
+            assert!(one < middle && middle < other, "{middle} between {one} and {other}");
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::common::paths::{scene_file, trace, typed};
 use arcslip::model::request::Record;
+use arcslip::output::Table;
 use arcslip::result::increment::{DeadLoadStability, PointKind};
 use serde_json::{Map, Value, json};
 use std::f64::consts::PI;
@@ -58,4 +59,28 @@ fn beyond_a_few_unknowns_a_limit_point_has_one_zero_eigenvalue() {
         }
     }
     assert_eq!(limits, 2);
+}
+
+#[test]
+fn stability_has_columns_where_it_is_recorded() {
+    let mut request = scene_file("von-mises-truss");
+    assert!(!Table::of(&request).header().contains("stability"));
+    request.analysis.record.get_or_insert_with(Record::default).stability = true;
+    let table = Table::of(&request);
+    let names = table.names();
+    let from = names.iter().position(|name| name == "stability.negative_eigenvalues").expect("a column");
+    assert_eq!(names[from..], ["stability.negative_eigenvalues", "stability.dead_load", "stability.instability"]);
+    let mut seen = std::collections::BTreeSet::new();
+    for increment in trace(&request).0 {
+        let stability = increment.stability.expect("asked for");
+        let word = |value: Option<Value>| value.unwrap_or(json!(""));
+        let [dead_load, instability] =
+            [serde_json::to_value(stability.dead_load).ok(), stability.instability.map(|one| json!(one))].map(word);
+        let row = table.values(&increment, None, &[from, from + 1, from + 2]);
+        assert_eq!(row[0].as_f64(), stability.negative_eigenvalues.map(|count| count as f64));
+        assert_eq!(row[1], dead_load);
+        assert_eq!(row[2].as_str().unwrap_or_default(), instability.as_str().unwrap_or_default());
+        seen.insert(dead_load.to_string());
+    }
+    assert_eq!(seen.len(), 3, "{seen:?}");
 }

@@ -2,6 +2,7 @@
 
 use crate::check::scenes;
 use crate::model::JobRequest;
+use crate::model::input::names::suggestion_of_all;
 use crate::service::http::answer::problem::Problem;
 use crate::service::http::document;
 use crate::service::http::view::scene::{SceneList, SceneSummary};
@@ -31,8 +32,8 @@ pub async fn list() -> Json<SceneList> {
 )]
 pub async fn get(Path(name): Path<String>) -> Result<impl IntoResponse, Problem> {
     let scene = scenes::find(&name).ok_or_else(|| {
-        let known: Vec<&str> = scenes::ALL.iter().map(|scene| scene.name).collect();
-        Problem::not_found(format_args!("scene of that name; there are {}", known.join(", ")))
+        let nearest = suggestion_of_all(&name, scenes::ALL.iter().map(|scene| scene.name));
+        Problem::not_found(format_args!("scene of that name{nearest}"))
     })?;
     Ok(([(header::CONTENT_TYPE, "application/json")], scene.request))
 }

@@ -3,6 +3,7 @@
 use crate::model::Model;
 use crate::result::increment::{Increment, PointKind};
 use crate::studies::picture::path::Against;
+use crate::studies::picture::path::strokes::Stretch;
 use std::sync::Arc;
 
 /// Load factor against a displacement.
@@ -30,6 +31,19 @@ pub struct CurvePoint {
     pub at: (f64, f64),
     /// The path has several continuations here.
     pub bifurcation: bool,
+    /// The structure has moved here from the point before.
+    pub is_moved: bool,
+}
+
+impl StageCurve {
+    /// What is between each two points, in order; the flag of a bifurcation is about the continuation of its point.
+    pub fn stretches(&self) -> impl Iterator<Item = Stretch> {
+        self.points.windows(2).map(|pair| match (pair[1].is_moved, pair[0].bifurcation) {
+            (true, _) => Stretch::Jump,
+            (false, true) => Stretch::Bifurcation,
+            (false, false) => Stretch::Plain,
+        })
+    }
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -82,7 +96,8 @@ impl Curve {
     }
 
     fn add_point(&mut self, increment: &Increment, at: (f64, f64)) {
-        let point = CurvePoint { at, bifurcation: increment.point.bifurcation };
+        let is_moved = matches!(increment.point.kind, PointKind::Jump | PointKind::Motion);
+        let point = CurvePoint { at, bifurcation: increment.point.bifurcation, is_moved };
         match self.stages.last_mut() {
             Some(stage) if stage.name == increment.stage => stage.points.push(point),
             _ => self.stages.push(StageCurve { name: Arc::clone(&increment.stage), points: vec![point] }),

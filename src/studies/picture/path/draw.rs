@@ -5,7 +5,7 @@ use crate::studies::picture::chart::{self, CAPTION, LONGEST, MARGIN, Side, TITLE
 use crate::studies::picture::labels::Map;
 use crate::studies::picture::path::curve::{Curve, StageCurve};
 use crate::studies::picture::path::legend::{LISTED_EVENTS, Legend};
-use crate::studies::picture::path::strokes::{MARKER, Stroke, leader, marker};
+use crate::studies::picture::path::strokes::{MARKER, Stretch, Stroke, leader, marker};
 use crate::studies::picture::shapes::{self, DrawingError, Drawn, FINE, Lettering, Place, Sheet};
 use plotters::prelude::{PathElement, RGBColor};
 use plotters::style::Color;
@@ -79,18 +79,17 @@ fn draw_stage(
     on_sheet: &impl Fn((f64, f64)) -> Place,
     map: &mut Map,
 ) -> Drawn {
-    let stroke = |bifurcation| Stroke { stage, bifurcation };
+    let stroke = |stretch| Stroke { stage, stretch };
     let places: Vec<Place> = drawn.points.iter().map(|point| on_sheet(point.at)).collect();
-    // The flag of a point is about its continuation, and so about the line to the next point.
-    let ways: Vec<(bool, [Place; 2])> = places
+    let ways: Vec<(Stretch, [Place; 2])> = places
         .windows(2)
-        .zip(&drawn.points)
-        .filter_map(|(ends, point)| Some((point.bifurcation, <[Place; 2]>::try_from(ends).ok()?)))
+        .zip(drawn.stretches())
+        .filter_map(|(ends, stretch)| Some((stretch, <[Place; 2]>::try_from(ends).ok()?)))
         .collect();
     for stretch in ways.chunk_by(|before, after| before.0 == after.0) {
-        let Some((bifurcation, [first, _])) = stretch.first().copied() else { continue };
+        let Some((kind, [first, _])) = stretch.first().copied() else { continue };
         let line = std::iter::once(first).chain(stretch.iter().map(|(_, [_, end])| *end)).collect();
-        stroke(bifurcation).line(sheet, line)?;
+        stroke(kind).line(sheet, line)?;
     }
     for (_, [from, to]) in ways {
         map.add_line(from, to);
@@ -98,7 +97,8 @@ fn draw_stage(
     let mut last: Option<Place> = None;
     for (point, place) in drawn.points.iter().zip(places) {
         if last.is_none_or(|last| (place.0 - last.0).abs().max((place.1 - last.1).abs()) >= DENSE) {
-            stroke(point.bifurcation).dot(sheet, place)?;
+            let kind = if point.bifurcation { Stretch::Bifurcation } else { Stretch::Plain };
+            stroke(kind).dot(sheet, place)?;
             last = Some(place);
         }
     }

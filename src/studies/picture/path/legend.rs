@@ -2,7 +2,7 @@
 
 use crate::studies::picture::axis::Axis;
 use crate::studies::picture::path::curve::{Curve, Event};
-use crate::studies::picture::path::strokes::{Stroke, marker};
+use crate::studies::picture::path::strokes::{Stretch, Stroke, marker};
 use crate::studies::picture::shapes::{Drawn, FAINT_INK, FINE, INK, Lettering, Place, Sheet};
 
 /// The most stages and events that are listed; the others are counted.
@@ -40,12 +40,15 @@ impl<'a> Legend<'a> {
         let mut rows = Vec::new();
         for (stage, drawn) in curve.stages.iter().enumerate().take(LISTED_STAGES) {
             let words = format!("stage {}", drawn.name);
-            rows.push(Row::Stroke { stroke: Stroke { stage, bifurcation: false }, words });
+            rows.push(Row::Stroke { stroke: Stroke { stage, stretch: Stretch::Plain }, words });
         }
         rows.extend(rest(curve.stages.len(), LISTED_STAGES, "stages"));
-        if curve.stages.iter().any(|stage| stage.points.iter().any(|point| point.bifurcation)) {
-            let words = "bifurcation points".to_owned();
-            rows.push(Row::Stroke { stroke: Stroke { stage: 0, bifurcation: true }, words });
+        for (stretch, words) in
+            [(Stretch::Bifurcation, "bifurcation points"), (Stretch::Jump, "jump: no equilibrium between")]
+        {
+            if curve.stages.iter().any(|stage| stage.stretches().any(|own| own == stretch)) {
+                rows.push(Row::Stroke { stroke: Stroke { stage: 0, stretch }, words: words.to_owned() });
+            }
         }
         for event in curve.events.iter().take(LISTED_EVENTS) {
             rows.push(Row::Event { event, load: load.number(event.at.1) });

@@ -21,27 +21,46 @@ pub const MARKER: i32 = 5;
 pub struct Stroke {
     /// Index of the stage.
     pub stage: usize,
-    pub bifurcation: bool,
+    pub stretch: Stretch,
+}
+
+/// What is between two points of the path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stretch {
+    /// States of equilibrium with one way on.
+    Plain,
+    /// States of equilibrium with several ways on.
+    Bifurcation,
+    /// A jump: the structure moves.
+    Jump,
 }
 
 impl Stroke {
     /// The colour and the width of the line, and the size of its dots, in fine units.
     fn look(self) -> (RGBColor, u32, i32) {
-        if self.bifurcation { (BIFURCATION, 36, 26) } else { (STAGES[self.stage % STAGES.len()], 14, 16) }
+        match self.stretch {
+            Stretch::Plain => (STAGES[self.stage % STAGES.len()], 14, 16),
+            Stretch::Bifurcation => (BIFURCATION, 36, 26),
+            Stretch::Jump => (FAINT_INK, 10, 10),
+        }
     }
 
-    /// Every second stage is dashed, so that a stage remains visible under a later one.
-    fn dashed(self) -> bool {
-        self.stage % 2 == 1 && !self.bifurcation
+    /// The dashes of a line and what is between them, in pixels. Every second stage is dashed, so that a stage remains visible
+    /// under a later one.
+    fn dashes(self) -> Option<(i32, i32)> {
+        match self.stretch {
+            Stretch::Plain => (self.stage % 2 == 1).then_some((7, 7)),
+            Stretch::Bifurcation => None,
+            Stretch::Jump => Some((3, 4)),
+        }
     }
 
     pub fn line(self, sheet: &Sheet<'_>, places: Vec<Place>) -> Drawn {
         let (color, width, _) = self.look();
         let style = color.stroke_width(width);
-        if self.dashed() {
-            sheet.draw(&DashedPathElement::new(places, 7 * FINE, 7 * FINE, style))
-        } else {
-            sheet.draw(&PathElement::new(places, style))
+        match self.dashes() {
+            Some((dash, gap)) => sheet.draw(&DashedPathElement::new(places, dash * FINE, gap * FINE, style)),
+            None => sheet.draw(&PathElement::new(places, style)),
         }
     }
 

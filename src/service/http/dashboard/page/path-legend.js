@@ -5,7 +5,7 @@ import { element, fill } from "./dom.js";
 import { MARKS } from "./path-curve.js";
 import { pathNames } from "./path-names.js";
 import { dashedSwatch, EXACT, fromSheet, stageColour, stageDash } from "./plot-style.js";
-import { branchingPlaces, named } from "./points.js";
+import { branchingPlaces, movedPlaces, named } from "./points.js";
 import { quantityWords } from "./quantities.js";
 import { kindWords, pointWords, short } from "./words.js";
 
@@ -50,6 +50,9 @@ export function keyRows(curves) {
   }
   if (paths.some((path) => branchingPlaces(path).size > 0)) {
     rows.push({ words: "bifurcation points: more than one way on", colour: fromSheet("--bifurcation"), dash: "solid" });
+  }
+  if (paths.some((path) => movedPlaces(path).size > 0)) {
+    rows.push({ words: "jump: no states of equilibrium between", colour: fromSheet("--quiet"), dash: "dash" });
   }
   const kinds = new Set(paths.flatMap((path) => named(path).map(({ kind }) => kind)));
   for (const [kind, [colour, symbol, filling]] of Object.entries(MARKS)) {

@@ -2,11 +2,11 @@
 // on, of each stage. The points of a style are one trace, interrupted where another style is between.
 
 import { fromSheet, stageColour, stageDash } from "./plot-style.js";
-import { branchingPlaces } from "./points.js";
+import { branchingPlaces, movedPlaces } from "./points.js";
 
 /** Stages from which on their styles repeat. */
 const STYLES = 4;
-const WIDTH = { bifurcation: 3.5, halo: 7, falls: 1.5, rises: 2.2 };
+const WIDTH = { bifurcation: 3.5, halo: 7, falls: 1.5, rises: 2.2, jump: 1 };
 
 export class Strands {
   /** `isAlone`: no other curve is drawn, and so the stages have colours. */
@@ -22,13 +22,18 @@ export class Strands {
   grow(from) {
     const { path } = this.curve;
     const [stages, loads] = [path.columns.get("stage"), path.columns.get("load_factor")];
-    const branches = branchingPlaces(path);
+    const [branches, moved] = [branchingPlaces(path), movedPlaces(path)];
     const pieces = new Map();
     for (let place = from; place < path.index.length; place++) {
       const begins = place === 0 || stages[place] !== stages[place - 1];
       if (begins && place > 0) this.stage++;
       if (begins) {
         this.push(pieces, this.key("rises"), null, place);
+        continue;
+      }
+      if (moved.has(place)) {
+        // No states of the path are between.
+        this.push(pieces, "jump", place - 1, place);
         continue;
       }
       const kind = loads[place] < loads[place - 1] ? "falls" : "rises";
@@ -61,15 +66,15 @@ export class Strands {
     this.ends.set(key, place);
   }
 
-  /** The trace of a style: `rises` or `falls` with the stage's number where it has a colour, `bifurcation` with either, `halo`. */
+  /** The trace of a style: `rises` or `falls` with the stage's number where it has a colour, `bifurcation` with either, `halo`, `jump`. */
   trace(key, piece, isMarked) {
     const [kind, more] = key.split(" ");
     const falls = kind === "falls" || more === "falls";
     const stage = Number(more) || 0;
-    const colour = kind === "bifurcation" || kind === "halo" ? fromSheet("--bifurcation")
+    const colour = kind === "bifurcation" || kind === "halo" ? fromSheet("--bifurcation") : kind === "jump" ? fromSheet("--quiet")
       : stage > 0 ? stageColour(stage) : this.curve.colour;
     return {
-      ...piece, type: "scatter", mode: isMarked && kind !== "halo" ? "lines+markers" : "lines", hoverinfo: "skip", name: key,
+      ...piece, type: "scatter", mode: isMarked && kind !== "halo" && kind !== "jump" ? "lines+markers" : "lines", hoverinfo: "skip", name: key,
       showlegend: false, zorder: kind === "halo" ? 1 : 2, opacity: kind === "halo" ? 0.3 : 1, yaxis: this.curve.yaxis,
       line: { color: colour, width: this.width(kind), dash: this.dash(kind, stage, falls) },
       marker: { color: colour, size: 4, symbol: falls ? "circle-open" : "circle" },
@@ -78,6 +83,7 @@ export class Strands {
 
   dash(kind, stage, falls) {
     if (kind === "halo") return "solid";
+    if (kind === "jump") return "dash";
     const own = !this.isAlone ? this.curve.dash : kind === "bifurcation" ? "solid" : stageDash(stage);
     return falls && (this.isAlone || own === "solid") ? "dot" : own;
   }

@@ -37,16 +37,22 @@ export function named(path) {
   return so.found;
 }
 
-/** Path to the places with more than one way on: `{taken, places}`. */
-const branching = new WeakMap();
+const MOVED = new Set(["jump", "motion"]);
+/** Path to the places of some of its points: `{taken, branching, moved}`. */
+const places = new WeakMap();
 
-/** The places of a path's increments at which there is more than one way on. */
-export function branchingPlaces(path) {
-  if (!branching.has(path)) branching.set(path, { taken: 0, places: new Set() });
-  const so = branching.get(path);
+function placesOf(path) {
+  if (!places.has(path)) places.set(path, { taken: 0, branching: new Set(), moved: new Set() });
+  const so = places.get(path);
   for (; so.taken < path.points.length; so.taken++) {
     const { index, point } = path.points[so.taken];
-    if (point.bifurcation) so.places.add(path.placeOf(index));
+    if (point.bifurcation) so.branching.add(path.placeOf(index));
+    if (MOVED.has(point.kind)) so.moved.add(path.placeOf(index));
   }
-  return so.places;
+  return so;
 }
+
+/** The places of a path's increments at which there is more than one way on. */
+export const branchingPlaces = (path) => placesOf(path).branching;
+/** The places of a path's increments to which the structure has moved in a jump. */
+export const movedPlaces = (path) => placesOf(path).moved;

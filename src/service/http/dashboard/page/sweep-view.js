@@ -1,4 +1,4 @@
-// A sweep: the first limit load against what is varied, with a line for each set of the other values, and its runs, whose
+// A sweep: its first response, or the first limit load, against what is varied, with a line for each set of the other values, and its runs, whose
 // paths can be drawn over one another.
 
 import { button, element, fill, table } from "./dom.js";
@@ -15,9 +15,11 @@ const OVERLAID = 40;
 /** Runs that stand in the table; the others are in the files. */
 const LISTED = 500;
 
+const shown = (value) => (typeof value === "number" ? Number(short(value)) : value ?? null);
+
 export class SweepView extends RowsView {
   constructor(section, told) {
-    super(section, told, { kind: "sweep", place: "/v1/sweeps", title: "Limit loads", pause: AGAIN });
+    super(section, told, { kind: "sweep", place: "/v1/sweeps", title: "What the runs have", pause: AGAIN });
   }
 
   progressWords() {
@@ -28,30 +30,38 @@ export class SweepView extends RowsView {
   async drawFindings() {
     const rows = this.rows.toSorted((a, b) => a.run - b.run);
     const names = this.record.parameters.map(({ pointer }) => placeWords(pointer));
-    const without = rows.filter(({ first_limit: limit }) => !limit).length;
-    this.words.textContent = `The load at the first limit point of each path.${without ? ` ${without} have none.` : ""}`;
+    const responses = Object.keys(this.record.responses ?? {});
+    // As in the picture of the command line: the first response, or the first limit load.
+    const [response] = responses;
+    const drawnOf = (row) => (response === undefined ? row.first_limit?.load_factor ?? null : row.responses?.[response] ?? null);
+    const isNumber = (row) => typeof drawnOf(row) === "number";
+    const told = response ?? "first limit load factor";
+    const without = rows.filter((row) => !isNumber(row)).length;
+    this.words.textContent = `${response === undefined ? "The load at the first limit point" : `“${response}”`} of each path.`
+      + (without ? ` ${without} have ${response === undefined ? "none" : "no number of it"}.` : "");
     const isNumbers = rows.every(({ values }) => typeof values[0] === "number");
     const inOrder = isNumbers ? rows.toSorted((a, b) => a.values[0] - b.values[0]) : rows;
     const lines = Object.groupBy(inOrder, ({ values }) => JSON.stringify(values.slice(1)));
     const traces = Object.values(lines).map((line, place) => ({
       type: "scatter", mode: "lines+markers",
-      name: line[0].values.slice(1).map((value, other) => `${verbatim(names[other + 1])} ${verbatim(valueWords(value))}`).join(", ") || "first limit load",
+      name: line[0].values.slice(1).map((value, other) => `${verbatim(names[other + 1])} ${verbatim(valueWords(value))}`).join(", ") || verbatim(told),
       x: line.map(({ values }) => (isNumbers ? values[0] : verbatim(valueWords(values[0])))),
-      y: line.map(({ first_limit: limit }) => limit?.load_factor ?? null),
+      y: line.map((row) => (isNumber(row) ? drawnOf(row) : null)),
       text: line.map(({ run, first_limit: limit }) => `run ${run}${limit ? `, ${plainWords(limit.kind)}` : ""}`),
       hovertemplate: "%{text}<br>%{x}: %{y:.6g}<extra></extra>",
       line: { color: colourOf(place) }, marker: { size: 7 },
     }));
     await this.plot(traces, {
-      xaxis: { ...axis(names[0]), ...(isNumbers ? {} : { type: "category" }) }, yaxis: { ...axis("first limit load factor"), rangemode: "tozero" },
+      xaxis: { ...axis(names[0]), ...(isNumbers ? {} : { type: "category" }) }, yaxis: { ...axis(verbatim(told)), rangemode: "tozero" },
       showlegend: traces.length > 1,
     });
     const drawn = rows.filter(({ last_index: last }) => last !== null).slice(0, OVERLAID);
     fill(this.listing,
       element("div", { class: "actions" }, button(`Draw the paths of ${drawn.length === rows.length ? "all" : `the first ${drawn.length}`} runs`,
         () => openJobs(drawn.map(({ job }) => job)), { "data-key": "overlay", id: "overlay" })),
-      table(["run", ...names, "limit load", "kind", "at increment", "ends", ""], rows.slice(0, LISTED).map((row) => [
+      table(["run", ...names, ...responses, "limit load", "kind", "at increment", "ends", ""], rows.slice(0, LISTED).map((row) => [
         row.run, ...row.values.map((value) => (typeof value === "number" ? value : valueWords(value))),
+        ...responses.map((name) => shown(row.responses?.[name])),
         row.first_limit ? Number(short(row.first_limit.load_factor)) : null, row.first_limit ? plainWords(row.first_limit.kind) : null,
         row.first_limit?.increment ?? null, row.error ?? plainWords(row.stop_reason ?? row.status),
         element("a", { href: addressOfJob(row.job) }, "path")])),
