@@ -224,6 +224,37 @@ fn the_curve_turns_back_where_maximum_and_minimum_of_the_load_meet() {
 }
 
 /// Klarbring's node is pressed in one stage and pulled in the next: the limit points at which it slips and leaves the floor.
+/// A contact begins to slip just before the load turns, where it stops again: past the last friction at which it does, it sticks
+/// all the way, and the load turns smoothly.
+#[test]
+fn the_curve_goes_on_where_a_change_before_the_limit_point_vanishes() {
+    for step in [0.01, 0.1] {
+        a_change_before_the_limit_point_vanishes(step);
+    }
+}
+
+fn a_change_before_the_limit_point_vanishes(step: f64) {
+    let settings =
+        json!({"parameter": "/model/contacts/*/friction", "range": [0.25, 0.7], "step": step, "limit_point": 2});
+    let curve = curve_of(&scene_file("three-snapping-bars"), &settings).expect("a curve");
+    let found = followed(&curve).expect("a curve");
+    ended(&found);
+    let changes: Vec<&CurveRow> = found.rows.iter().filter(|row| row.codimension_two).collect();
+    let [change] = changes[..] else { panic!("{changes:?}, {:?}", found.summary) };
+    let event = change.event.as_deref().expect("an event");
+    assert!(event.ends_with("the nonsmooth limit point becomes a smooth limit point"), "{event}");
+    assert!((0.3068..0.3069).contains(&change.value), "{}", change.value);
+    for row in found.rows.iter().filter(|row| !row.codimension_two) {
+        let kind = if row.value <= change.value { PointKind::NonsmoothLimit } else { PointKind::SmoothLimit };
+        assert_eq!(row.kind, kind, "{}", row.value);
+    }
+    // Just before the change the slip is shorter than the steps of a path.
+    let clear = found.rows.iter().filter(|row| (row.value - change.value).abs() > 1e-3);
+    let off = clear.map(|row| off_path(&curve, row).unwrap_or(f64::INFINITY)).fold(0.0, f64::max);
+    println!("{off:e} from paths of their own");
+    assert!(off <= 1e-8, "{off:e}");
+}
+
 #[test]
 fn limit_points_of_later_stages_are_followed_with_what_the_stages_before_left() {
     let request = scene_file("klarbring");

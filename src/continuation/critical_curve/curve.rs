@@ -8,7 +8,7 @@ use crate::continuation::critical_curve::last_points::LastPoints;
 use crate::continuation::critical_curve::solved_history::{PathCondition, SolvedHistory};
 use crate::continuation::critical_curve::tolerances::{
     FIRST_DEVIATION, FOUND_ZERO, LARGEST_DEVIATION, MODEL_STEP, PASSED, PAST_CHANGE, SAME_POINT, SHORTEST_CHORD,
-    SHORTEST_STEP, STEP_GROWTH, STEP_ROUND_OFF, TURNING_STEP,
+    SHORTEST_STEP, STEP_GROWTH, STEP_ROUND_OFF, TURNING_STEP, UNLOCATED_STEPS,
 };
 use crate::continuation::critical_curve::traced_history::{self, CurveRefusal, CurveStart};
 use crate::continuation::critical_curve::traced_paths::TracedPaths;
@@ -187,7 +187,8 @@ impl<'a> CriticalCurve<'a> {
         };
         if walk.place.history.gets_friction(&scene) {
             let from = walk.place.here.clone();
-            return self.go_on_past(walk, &from, paths, accept, || "friction begins there".to_owned());
+            let slack = self.slack(&walk.place);
+            return self.go_on_past(walk, (&from, slack), paths, accept, || "friction begins there".to_owned());
         }
         let Some(solved) = self.near(&walk.place, &scene, value) else {
             if walk.step <= TURNING_STEP * self.range.step
@@ -200,7 +201,8 @@ impl<'a> CriticalCurve<'a> {
             }
             let from = walk.place.here.clone();
             let lost = || "steps became too short, and no solution of its equations was found near by".to_owned();
-            return self.go_on_past(walk, &from, paths, accept, lost);
+            let slack = self.slack(&walk.place);
+            return self.go_on_past(walk, (&from, slack), paths, accept, lost);
         };
         let broken = solved.ended_since(&walk.place.here);
         if broken.is_empty() {
@@ -222,7 +224,7 @@ impl<'a> CriticalCurve<'a> {
         if change.parameter == walk.target(&self.range) {
             return ControlFlow::Break(Stopped::Ended(DirectionEnd::Range));
         }
-        self.go_on_past(walk, &change, paths, accept, || what)
+        self.go_on_past(walk, (&change, 0.0), paths, accept, || what)
     }
 
     /// Goes round a point where the curve turns back in the parameter.
@@ -310,12 +312,12 @@ impl<'a> CriticalCurve<'a> {
         solved_at(root)
     }
 
-    /// Goes on past a change, by a path traced there: its critical point must come from the same state. Where another change
-    /// comes in between, the path is traced closer to this one.
+    /// Goes on past a change, by a path traced there: its critical point must come from the same state, but for `slack`. Where
+    /// another change comes in between, the path is traced closer to this one.
     fn go_on_past(
         &mut self,
         walk: &mut Walk,
-        change: &SolvedHistory,
+        (change, slack): (&SolvedHistory, f64),
         paths: &mut TracedPaths<'_>,
         accept: AcceptPoint<'_>,
         why: impl FnOnce() -> String,
@@ -326,12 +328,15 @@ impl<'a> CriticalCurve<'a> {
             let value = stepped(change.parameter, walk.sense * part * self.range.step, walk.target(&self.range));
             let Ok(scene) = (self.family)(value) else { continue };
             let is_last = part == PAST_CHANGE[PAST_CHANGE.len() - 1];
-            let found = paths.past_change(&walk.place, change, (&scene, value), is_last, &mut self.work);
+            let found = paths.past_change(&walk.place, (change, slack), (&scene, value), is_last, &mut self.work);
             if self.cancel.is_cancelled() {
                 return ControlFlow::Break(Stopped::Cancelled);
             }
             if let Some(position) = found.position {
-                walk.place = position;
+                if slack > 0.0 && position.history.kind != walk.place.history.kind {
+                    self.tell_change_of_kind(walk, change, &position, accept)?;
+                }
+                (walk.place, walk.step) = (position, self.range.step);
                 let note = PointNote { event: None, codimension_two: false, from_path: true };
                 return flow(self.emit(&scene, &walk.place, note, accept));
             }
@@ -340,6 +345,32 @@ impl<'a> CriticalCurve<'a> {
         let what = if has_limits { "has limit points, and none that comes from there" } else { "has no limit point" };
         let why = format!("{}; the path at {} {what}", why(), critical_point::in_words(tried));
         ControlFlow::Break(Stopped::Ended(DirectionEnd::Lost { value: change.parameter, why }))
+    }
+
+    /// How far the critical point moves, by its last two points, over the steps within which a change is not located.
+    fn slack(&self, place: &CurvePosition) -> f64 {
+        let Some(before) = &place.before else { return SAME_POINT };
+        let chord = before.critical().distance(place.here.critical());
+        SAME_POINT + UNLOCATED_STEPS * self.shortest() * chord / (place.here.parameter - before.parameter).abs()
+    }
+
+    /// A row at the last point before a change that is not an event of its own: a change of contact before the critical point
+    /// vanishes or arises, and with it the kind of the point.
+    fn tell_change_of_kind(
+        &mut self,
+        walk: &Walk,
+        change: &SolvedHistory,
+        past: &CurvePosition,
+        accept: AcceptPoint<'_>,
+    ) -> ControlFlow<Stopped> {
+        let Ok(scene) = (self.family)(change.parameter) else { return ControlFlow::Continue(()) };
+        let [before, after] =
+            [&walk.place.history, &past.history].map(|history| critical_point::kind_name(history.kind));
+        let event =
+            format!("the changes of contact on the way are others from here on: the {before} becomes a {after}");
+        let at_change = CurvePosition { here: change.clone(), history: walk.place.history.clone(), before: None };
+        let note = PointNote { event: Some(event), codimension_two: true, from_path: false };
+        flow(self.emit(&scene, &at_change, note, accept))
     }
 
     /// Makes a point the last one of the curve.

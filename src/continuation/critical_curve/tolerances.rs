@@ -77,3 +77,6 @@ pub(crate) const SAME_POINT: f64 = 1e-7;
 /// The point asked for and the one on a path with all of its contact changes resolved coincide within this (dimensionless):
 /// a limit point is flat.
 pub(crate) const ASKED_POINT: f64 = 1e-4;
+
+/// Where a curve is lost between two values, the change may be this many shortest steps away from the last point.
+pub(crate) const UNLOCATED_STEPS: f64 = 4.0;

@@ -42,12 +42,12 @@ impl<'a> TracedPaths<'a> {
         Self { family, cancel, count: 1, longest: LEAST_PATH.max(MOST_PATH_FACTOR.saturating_mul(index)) }
     }
 
-    /// The limit point that continues the curve, on a path at a value past a change. Unless `any`, no other change lies
-    /// between them.
+    /// The limit point that continues the curve, on a path at a value past a change: followed back there, it is the same state
+    /// but for `slack`. Unless `any`, no other change lies between them.
     pub fn past_change(
         &mut self,
         position: &CurvePosition,
-        change: &SolvedHistory,
+        (change, slack): (&SolvedHistory, f64),
         (scene, value): (&Scene, f64),
         any: bool,
         work: &mut Work,
@@ -69,7 +69,7 @@ impl<'a> TracedPaths<'a> {
             let (scene_at_change, back) = back_to(self.family, &begin, change.parameter, any, work)?;
             let at_change = back.scales.express(back.critical(), stage, &scene_at_change);
             let expected = change.scales.express(change.critical(), stage, &scene_at_change);
-            let is_same = at_change.distance(&expected) <= SAME_POINT * (1.0 + expected.size());
+            let is_same = at_change.distance(&expected) <= SAME_POINT * (1.0 + expected.size()) + slack;
             is_same.then_some(CurvePosition { before: Some(back), ..begin })
         };
         let position = limits.nearest_first().take(MOST_CANDIDATES).find_map(continues);
