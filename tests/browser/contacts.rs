@@ -46,11 +46,13 @@ async fn the_contacts_of_the_shown_increment_are_listed_with_units() {
             short(&contact["tangential_reaction"][0]),
             short(&contact["slip"][0]),
             short(&contact["slip_total"][0]),
+            format!("{}, {}", short(&contact["reaction"][0]), short(&contact["reaction"][1])),
         ]]);
         assert_eq!(found, expected, "increment {index}");
     }
     let head = browser.ask(HEAD).await;
     assert_eq!([&head[3], &head[4], &head[7]], ["gap (mm)", "normal reaction (N)", "total slip (mm)"]);
+    assert_eq!(head[8], "reaction x, y (N)");
     browser.close(served.url(), &[]).await;
 }
 

@@ -94,10 +94,11 @@ fn draw_stage(
     for (_, [from, to]) in ways {
         map.add_line(from, to);
     }
+    let end = drawn.points.last().map(|point| if point.bifurcation { Stretch::Bifurcation } else { Stretch::Plain });
+    let kinds = drawn.stretches().map(|kind| if kind == Stretch::Jump { Stretch::Plain } else { kind });
     let mut last: Option<Place> = None;
-    for (point, place) in drawn.points.iter().zip(places) {
+    for (place, kind) in places.into_iter().zip(kinds.chain(end)) {
         if last.is_none_or(|last| (place.0 - last.0).abs().max((place.1 - last.1).abs()) >= DENSE) {
-            let kind = if point.bifurcation { Stretch::Bifurcation } else { Stretch::Plain };
             stroke(kind).dot(sheet, place)?;
             last = Some(place);
         }

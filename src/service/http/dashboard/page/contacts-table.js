@@ -70,7 +70,8 @@ class ContactsTable {
   head() {
     const { length, force } = unitsOf(this.path.request.model);
     return ["node", "obstacle", "status", headed("gap", length), headed("normal reaction", force),
-      headed("tangential reaction", force), headed("slip", length), headed("total slip", length)];
+      headed("tangential reaction", force), headed("slip", length), headed("total slip", length),
+      headed(`reaction ${[..."xyz"].slice(0, this.path.request.model.dimension).join(", ")}`, force)];
   }
 }
 
@@ -82,5 +83,5 @@ const row = (contact) => [
   element("span", {}, element("span", { class: `swatch state ${contact.status}`, style: `--colour:var(--${contact.status})` }),
     plainWords(contact.status), contact.indeterminate ? " (reaction not determined by equilibrium)" : ""),
   number(short(contact.gap)), number(short(contact.normal_reaction)), several(contact.tangential_reaction), several(contact.slip),
-  several(contact.slip_total),
+  several(contact.slip_total), several(contact.reaction),
 ];

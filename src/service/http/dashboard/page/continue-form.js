@@ -3,6 +3,7 @@
 
 import { post } from "./api.js";
 import { button, element, fill } from "./dom.js";
+import { mayJump } from "./quantities.js";
 import { kindWords, short } from "./words.js";
 
 const LIMITS = ["smooth_limit", "nonsmooth_limit"];
@@ -22,7 +23,8 @@ export class ContinueForm {
   choose(path, at) {
     const limits = path.points.filter(({ point }) => LIMITS.includes(point.kind));
     const chosen = limits.find(({ index }) => index === at) ?? limits[0];
-    const wanted = chosen && !path.job.parent ? `${path.id} ${chosen.index}` : "";
+    // Of a path that jumps no limit point is followed.
+    const wanted = chosen && !path.job.parent && !mayJump(path.request) ? `${path.id} ${chosen.index}` : "";
     if (wanted === this.shown) return;
     this.shown = wanted;
     this.panel.hidden = !wanted;

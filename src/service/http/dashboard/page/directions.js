@@ -7,7 +7,7 @@ import { short } from "./words.js";
 
 /** The default number of increments of a followed direction is that of the path, but at least this. */
 const FEWEST = 20;
-/** Of more contacts than this, those that touch are named and the others counted. */
+/** Of more contacts than this, those in which the directions differ are named and the others counted. */
 const MANY = 12;
 
 export class Directions {
@@ -60,7 +60,8 @@ export class Directions {
   draw(path, at, { index, directions, contacts }) {
     this.panel.hidden = false;
     const problem = element("p", { class: "bad", role: "alert" });
-    const states = (direction) => statesOf(direction, contacts);
+    const differs = contacts.map((_, place) => new Set(directions.map((one) => one.contacts[place])).size > 1);
+    const states = (direction) => statesOf(direction, contacts, differs);
     const most = element("input", {
       type: "number", id: "follow-most", "data-key": "most", min: 1, max: path.job.progress.max_increments, step: 1,
       value: Math.min(path.job.progress.max_increments, Math.max(FEWEST, path.index.length)),
@@ -99,12 +100,13 @@ export class Directions {
   }
 }
 
-/** The states of the contacts of a direction; of many contacts those that touch. */
-function statesOf(direction, contacts) {
+/** The states of the contacts of a direction; of many contacts those in which the directions differ. */
+function statesOf(direction, contacts, differs) {
   const all = direction.contacts.map((status, place) => ({ node: contacts[place]?.node, status }));
-  const named = all.length > MANY ? all.filter(({ status }) => status !== "free") : all;
+  const named = all.length > MANY ? all.filter((_, place) => differs[place]) : all;
   const rest = all.length - named.length;
   return [
-    ...named.map(({ node, status }) => (node === undefined ? status : `${node}: ${status}`)), ...(rest ? [`${rest} free`] : []),
+    ...named.map(({ node, status }) => (node === undefined ? status : `${node}: ${status}`)),
+    ...(rest ? [`${rest} alike in all directions`] : []),
   ].join(", ");
 }

@@ -81,7 +81,8 @@ export class Curve {
         size: 9, color: colours(2), line: { color: colours(0), width: 1.5 },
         symbol: found.map(({ kind }) => MARKS[kind][1]),
       },
-      textfont: { color: fromSheet("--text"), size: 14 }, cliponaxis: false,
+      // Each path has letters of its own.
+      textfont: { color: this.strands.isAlone ? fromSheet("--text") : this.colour, size: 14 }, cliponaxis: false,
     };
   }
 }

@@ -48,7 +48,7 @@ export function keyRows(curves) {
     const words = "the load falls: a load that only grows leaves the path here";
     rows.push({ words, colour: isAlone ? curves[0].colour : ink, dash: "dot" });
   }
-  if (paths.some((path) => branchingPlaces(path).size > 0)) {
+  if (paths.some(branches)) {
     rows.push({ words: "bifurcation points: more than one way on", colour: fromSheet("--bifurcation"), dash: "solid" });
   }
   if (paths.some((path) => movedPlaces(path).size > 0)) {
@@ -83,6 +83,12 @@ export function stagesOf(path) {
   return path.columns.get("stage").filter((name, place, all) => place === 0 || name !== all[place - 1]);
 }
 
+/** Whether a line of the path begins at a bifurcation; a jump from one is a line of its own. */
+function branches(path) {
+  const moved = movedPlaces(path);
+  return [...branchingPlaces(path)].some((place) => !moved.has(place + 1));
+}
+
 function falls(path) {
   const [stages, loads] = [path.columns.get("stage"), path.columns.get("load_factor")];
   return loads.some((load, place) => place > 0 && stages[place] === stages[place - 1] && load < loads[place - 1]);
@@ -94,10 +100,10 @@ export function namedWords(path, point) {
   return `${pointWords(point)} at load ${short(load)}${point.event ? `: ${point.event}` : ""}`;
 }
 
-/** `choose(index)` is told of a point that is chosen. */
-export function namedPoints(place, path, choose) {
+/** `whose`: the name of the path where others are drawn, too; `choose(index)` is told of a point that is chosen. */
+export function namedPoints(place, path, whose, choose) {
   const found = named(path);
-  fill(place, found.slice(0, LISTED).map((point) => element("li", {},
+  fill(place, whose && found.length > 0 ? element("li", { class: "quiet" }, `Points of ${whose}:`) : null, found.slice(0, LISTED).map((point) => element("li", {},
     element("button", {
       type: "button", class: "plain", "data-key": `point ${point.index}`, onclick: () => choose(point.index),
     }, element("span", { class: "letter" }, point.name || SIGNS.bifurcation), ` ${namedWords(path, point)}`))),

@@ -5,7 +5,7 @@ import { choice, element, fill } from "./dom.js";
 import { plotButtons } from "./downloads.js";
 import { axesControls, axisWords, isOnFirstAxis } from "./path-axes.js";
 import { Curve } from "./path-curve.js";
-import { lineKey, namedPoints, pathLegend } from "./path-legend.js";
+import { curveNames, lineKey, namedPoints, pathLegend } from "./path-legend.js";
 import { PathLooks } from "./path-names.js";
 import { exactTrace, pathWords } from "./path-words.js";
 import { axis, CONFIGURATION, fromSheet, layout } from "./plot-style.js";
@@ -82,7 +82,8 @@ export class PathPlot {
     this.controls(exact);
     await Plotly.react(this.place, traces, this.layout(), CONFIGURATION);
     this.listen();
-    namedPoints(this.list, paths[0], (index) => this.told.chosen(paths[0].id, index));
+    const whose = paths.length > 1 ? curveNames(this.curves, this.runs)[0] : null;
+    namedPoints(this.list, paths[0], whose, (index) => this.told.chosen(paths[0].id, index));
   }
 
   /** The curves: each ordinate of each path. */

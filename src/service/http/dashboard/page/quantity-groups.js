@@ -7,8 +7,11 @@ const LETTERS = "xyz";
 const ENERGIES = Object.keys(PLAIN).filter((name) => name.startsWith("/energy/"));
 const ACCURACY = [
   "/diagnostics/residual", "/diagnostics/complementarity", "/diagnostics/energy_error", "/diagnostics/error_estimate",
-  "/measure/equilibrium", "/measure/contact", "/measure/cone", "/measure/friction", "/diagnostics/elapsed_s",
-  "/diagnostics/factorisations", "/diagnostics/newton_iterations",
+  "/measure/equilibrium", "/measure/global_equilibrium", "/measure/support", "/measure/contact", "/measure/cone",
+  "/measure/friction", "/measure/slip_direction", "/measure/reported", "/measure/arc_length", "/measure/energy",
+  "/measure/strain_energy", "/diagnostics/elapsed_s", "/diagnostics/factorisations", "/diagnostics/newton_iterations",
+  "/diagnostics/qp_solves", "/diagnostics/mpec_solves", "/diagnostics/sqp_iterations", "/diagnostics/certificates",
+  "/diagnostics/mpec_fallbacks", "/diagnostics/bifurcation_factorisations",
 ];
 
 /**

@@ -68,6 +68,7 @@ export class StructureOptions {
     if (!hasBeams) this.kinds.value = "";
     this.names.checked = canHaveNames && (this.hasNames ?? hasNames);
     this.names.disabled = !canHaveNames;
+    this.names.parentElement.title = canHaveNames ? "" : "There are too many nodes for their names";
   }
 }
 
