@@ -213,14 +213,14 @@ async fn the_service_draws_the_same_pictures() {
         assert_eq!(pixels, std::fs::read(&file).expect("a picture"));
         assert_eq!(size_of_png(&pixels)[0], 2 * 1040);
     }
-    for (wrong, told) in [
-        ("?against=node.q", "against: `node.q`: the model has no such displacement (NODE.COMPONENT)"),
-        ("?against=", "against"),
-        ("?node=p", "there is no parameter `node`"),
+    for (wrong, expected, told) in [
+        ("?against=node.q", 404, "against `node.q`: the model has no such displacement (NODE.COMPONENT)"),
+        ("?against=", 404, "against ``"),
+        ("?node=p", 400, "there is no parameter `node`"),
     ] {
         let answer = server.get(&format!("{place}{wrong}")).await;
         let status = answer.status();
         let answer: serde_json::Value = answer.json().await.expect("JSON");
-        assert!(status == 400 && answer["detail"].as_str().expect("text").contains(told), "{wrong}: {answer}");
+        assert!(status == expected && answer["detail"].as_str().expect("text").contains(told), "{wrong}: {answer}");
     }
 }

@@ -74,7 +74,7 @@ async fn picture(
     let model = path.of_request(|request| request.model.clone()).await?;
     let nothing = |why: &str| Problem::not_found(format_args!("picture of job {id}: {why}"));
     let against = match against {
-        Some(text) => Against::read(&text, &model).map_err(|error| Problem::parameter("against", error))?,
+        Some(text) => Against::read(&text, &model).map_err(|error| nothing(&format!("against {error}")))?,
         None => {
             let mut farthest = Farthest::of(&model);
             while let Some(page) = path.next_page().await? {
