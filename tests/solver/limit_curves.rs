@@ -248,8 +248,9 @@ fn a_change_before_the_limit_point_vanishes(step: f64) {
         let kind = if row.value <= change.value { PointKind::NonsmoothLimit } else { PointKind::SmoothLimit };
         assert_eq!(row.kind, kind, "{}", row.value);
     }
-    // Just before the change the slip is shorter than the steps of a path.
-    let clear = found.rows.iter().filter(|row| (row.value - change.value).abs() > 1e-3);
+    // From 0.3064 to the change the path leaves the limit point along its other direction, whose dissipation has become the
+    // larger one there: the curve goes on along its own.
+    let clear = found.rows.iter().filter(|row| !(0.3064..=change.value).contains(&row.value));
     let off = clear.map(|row| off_path(&curve, row).unwrap_or(f64::INFINITY)).fold(0.0, f64::max);
     println!("{off:e} from paths of their own");
     assert!(off <= 1e-8, "{off:e}");

@@ -8,8 +8,8 @@
 //! [ G  0 ] [ρ]   =   [ 0 ]
 //! ```
 //!
-//! with the columns `C` of the contacts' forces, friction included, and the rows `G` of their motions; `1/κ` are the
-//! eigenvalues of the first block of the inverse. Without slip against friction the tangent is symmetric.
+//! with the columns `C` of the contacts' forces, friction included, and the rows `G` of their motions; `1/(κ - σ)` are the
+//! eigenvalues of the first block of the inverse with `K - σ` in the place of `K`, where the shift `σ` is 0 unless a `κ` is. Without slip against friction the tangent is symmetric.
 //!
 //! And whether the state is stable while the load stays (dead load), by the directional criterion of frictional contact
 //! (J. A. C. Martins, A. Pinto da Costa, Int. J. Solids Struct. 37 (2000) 2519): the state is unstable if some motion `v e^{λt}`,

@@ -1,7 +1,7 @@
 //! The file of a picture, in the format that its extension names.
 
 use crate::command::output::outcome::Failure;
-use crate::command::output::written::{extension, write};
+use crate::command::output::written::{extension, write, write_file};
 use crate::studies::picture::raster::png;
 use std::path::Path;
 
@@ -37,8 +37,6 @@ impl<'a> PictureFile<'a> {
         if !self.is_png {
             return write(self.place, svg);
         }
-        let picture = png(svg).map_err(Failure::other)?;
-        std::fs::write(self.place, picture)
-            .map_err(|error| Failure::Other(format!("{}: {error}", self.place.display())))
+        write_file(self.place, &png(svg).map_err(Failure::other)?)
     }
 }

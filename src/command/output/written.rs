@@ -13,7 +13,12 @@ pub fn write(place: &Path, text: &str) -> Result<(), Failure> {
     if is_standard_output(place) {
         return say(text);
     }
-    std::fs::write(place, text).map_err(|error| Failure::Other(format!("{}: {error}", place.display())))
+    write_file(place, text.as_bytes())
+}
+
+/// Writes bytes to a file.
+pub fn write_file(place: &Path, content: &[u8]) -> Result<(), Failure> {
+    std::fs::write(place, content).map_err(|error| Failure::Other(format!("{}: {error}", place.display())))
 }
 
 /// Refuses a file in a folder that does not exist, before anything is traced. Each place is the name of an option and its

@@ -187,8 +187,7 @@ impl<'a> CriticalCurve<'a> {
         };
         if walk.place.history.gets_friction(&scene) {
             let from = walk.place.here.clone();
-            let slack = self.slack(&walk.place);
-            return self.go_on_past(walk, (&from, slack), paths, accept, || "friction begins there".to_owned());
+            return self.go_on_past(walk, (&from, 0.0), paths, accept, || "friction begins there".to_owned());
         }
         let Some(solved) = self.near(&walk.place, &scene, value) else {
             if walk.step <= TURNING_STEP * self.range.step

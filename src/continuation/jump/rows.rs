@@ -66,13 +66,13 @@ fn at_rest(trace: &mut PathTrace<'_>, settings: &JumpMotion) -> Increment {
     event.extend(other.as_ref().map(|other| format!("; {}", comparison::sentence(other))));
     let mut point = Point::plain(PointKind::Jump, Some(event));
     let modes = trace.at.here.modes.clone();
-    if stages::is_over(trace) {
+    let (options, taken) = if stages::is_over(trace) {
         trace.at.stage_over = true;
         stages::tell_end(&mut point, &trace.scene.stages[trace.at.stage]);
-        let row = emit(trace, &before, &modes, point, (Vec::new(), None));
-        return Increment { other_motion: other.map(Box::new), ..row };
-    }
-    let (options, taken) = stages::depart(trace, &mut point);
+        (Vec::new(), None)
+    } else {
+        stages::depart(trace, &mut point)
+    };
     if motion.from.distance(&trace.at.here.state) <= SAME_STATE && trace.at.motion.take().is_some() {
         trace.end(StopReason::NoDirection);
     }

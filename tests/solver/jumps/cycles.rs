@@ -1,6 +1,6 @@
 //! Loads that go to and fro: closed loops of hysteresis.
 
-use super::jump;
+use super::{jump, von_mises};
 use crate::common::paths::{Traced, close, judged, trace, typed};
 use arcslip::result::increment::{Increment, PointKind};
 use arcslip::result::stop_reason::StopReason;
@@ -8,20 +8,10 @@ use serde_json::{Value, json};
 
 /// A von Mises truss that is held by a soft spring, pushed to and fro.
 fn truss(history: &[f64], cycles: u64) -> Value {
-    json!({
-        "model": {
-            "dimension": 2, "nodes": {"left": [-1, 0], "apex": [0, 0.5], "right": [1, 0]},
-            "supports": {"left": ["x", "y"], "right": ["x", "y"]},
-            "elements": [
-                {"kind": "bar", "nodes": ["left", "apex"], "axial_stiffness": 1},
-                {"kind": "bar", "nodes": ["apex", "right"], "axial_stiffness": 1},
-            ],
-            "stages": [{
-                "name": "cycle", "forces": {"apex": [0, -1]}, "control": "load", "history": history, "cycles": cycles
-            }],
-        },
-        "analysis": {"max_increments": 100_000},
-    })
+    let stage = json!({
+        "name": "cycle", "forces": {"apex": [0, -1]}, "control": "load", "history": history, "cycles": cycles
+    });
+    von_mises(&json!([stage]), &json!({"max_increments": 100_000}))
 }
 
 /// The last increments of the cycles: those at which the load reaches a number.

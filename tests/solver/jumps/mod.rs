@@ -21,6 +21,22 @@ pub fn jump(increments: &[Increment]) -> (&Increment, &Increment) {
     (&increments[place - 1], &increments[place])
 }
 
+/// The request of von Mises' truss, `EA = b = 1`, `h = 1/2`, under these stages.
+pub fn von_mises(stages: &Value, analysis: &Value) -> Value {
+    json!({
+        "model": {
+            "dimension": 2, "nodes": {"left": [-1, 0], "apex": [0, 0.5], "right": [1, 0]},
+            "supports": {"left": ["x", "y"], "right": ["x", "y"]},
+            "elements": [
+                {"kind": "bar", "nodes": ["left", "apex"], "axial_stiffness": 1},
+                {"kind": "bar", "nodes": ["apex", "right"], "axial_stiffness": 1},
+            ],
+            "stages": stages,
+        },
+        "analysis": analysis,
+    })
+}
+
 /// A flat truss of two to four nodes over a floor that may slant, its right end held or on a rough bed, pressed down.
 pub fn flat_truss(numbers: &mut Numbers) -> JobRequest {
     let count = 2 + numbers.below(3);

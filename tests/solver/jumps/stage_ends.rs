@@ -1,26 +1,15 @@
 //! Stages that begin at a limit point, and stages whose end is passed within a jump.
 
-use super::jump;
+use super::{jump, von_mises};
 use crate::common::paths::{close, trace, typed};
 use arcslip::model::JobRequest;
 use arcslip::result::increment::PointKind;
 use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
 
-/// Von Mises' truss under these stages.
-fn truss(stages: Value) -> JobRequest {
-    typed(json!({
-        "model": {
-            "dimension": 2, "nodes": {"left": [-1, 0], "apex": [0, 0.5], "right": [1, 0]},
-            "supports": {"left": ["x", "y"], "right": ["x", "y"]},
-            "elements": [
-                {"kind": "bar", "nodes": ["left", "apex"], "axial_stiffness": 1},
-                {"kind": "bar", "nodes": ["apex", "right"], "axial_stiffness": 1},
-            ],
-            "stages": stages,
-        },
-        "analysis": {"on_path_end": "jump", "record": {"stability": true}},
-    }))
+/// Von Mises' truss under these stages, which jumps where its path ends.
+fn truss(stages: &Value) -> JobRequest {
+    typed(von_mises(stages, &json!({"on_path_end": "jump", "record": {"stability": true}})))
 }
 
 #[test]
@@ -28,7 +17,7 @@ fn a_stage_that_begins_at_a_limit_point_jumps_at_once() {
     let first = json!({"name": "up", "forces": {"apex": [0, -1]}, "until": {"limit_points": 1}});
     for force in [[0.0, -1.0], [1.0, -1.0], [0.0, -0.01]] {
         let on = json!({"name": "on", "forces": {"apex": force}, "control": "load", "until": {"load_above": 0.01}});
-        let (increments, report) = trace(&truss(json!([first, on])));
+        let (increments, report) = trace(&truss(&json!([first, on])));
         assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{force:?}");
         let (before, after) = jump(&increments);
         assert_eq!(before.point.kind, PointKind::Start, "{force:?}");
@@ -40,7 +29,7 @@ fn a_stage_that_begins_at_a_limit_point_jumps_at_once() {
     }
     // The load falls without more ado.
     let back = json!({"name": "back", "forces": {"apex": [0, 1]}, "control": "load", "until": {"load_above": 0.01}});
-    let (increments, report) = trace(&truss(json!([first, back])));
+    let (increments, report) = trace(&truss(&json!([first, back])));
     assert_eq!(report.stop_reason, StopReason::StagesCompleted);
     assert!(increments.iter().all(|one| one.point.kind != PointKind::Jump));
 }
@@ -49,13 +38,13 @@ fn a_stage_that_begins_at_a_limit_point_jumps_at_once() {
 fn a_stage_ends_at_rest_where_its_end_is_passed_within_a_jump() {
     let next = json!({"name": "next", "forces": {"apex": [1, 0]}, "until": {"load_above": 0.001}});
     let far = json!({"name": "far", "forces": {"apex": [0, -1]}, "until": {"load_above": 0.05}, "control": "load"});
-    let landed = jump(&trace(&truss(json!([far]))).0).1.clone();
+    let landed = jump(&trace(&truss(&json!([far]))).0).1.clone();
     for until in [
         json!({"displacement": {"node": "apex", "component": "y", "below": -0.8}}),
         json!({"increments": landed.index}),
     ] {
         let press = json!({"name": "press", "forces": {"apex": [0, -1]}, "control": "load", "until": until});
-        let request = truss(json!([press, next]));
+        let request = truss(&json!([press, next]));
         let (increments, report) = trace(&request);
         assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{until}");
         let after = jump(&increments).1;

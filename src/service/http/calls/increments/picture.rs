@@ -1,5 +1,6 @@
 //! The picture of a path: load factor against a displacement, as `arcslip solve --plot` draws it.
 
+use crate::result::increment::Increment;
 use crate::service::http::answer::problem::{Kind, Problem};
 use crate::service::http::answer::tag;
 use crate::service::http::calls::increments::stored::{Stored, StoredPath};
@@ -13,6 +14,7 @@ use crate::studies::picture::raster::png;
 use axum::http::header;
 use axum::response::Response;
 use serde::Deserialize;
+use std::io;
 
 /// Most increments of a picture, as all its points are held in memory.
 const MOST_POINTS: u64 = 100_000;
@@ -76,26 +78,12 @@ async fn picture(
     let against = match against {
         Some(text) => Against::read(&text, &model).map_err(|error| nothing(&format!("against {error}")))?,
         None => {
-            let mut farthest = Farthest::of(&model);
-            while let Some(page) = path.next_page().await? {
-                let push = |farthest: &mut Farthest, Stored { increment, .. }: Stored| {
-                    farthest.push(&increment);
-                    Ok(())
-                };
-                farthest = path.each(page, farthest, push).await?;
-            }
+            let farthest = over_path(&mut path, job.last_index, Farthest::of(&model), Farthest::push).await?;
             path.rewind();
             farthest.found().ok_or_else(|| nothing("no displacement of it is recorded"))?
         }
     };
-    let mut curve = Curve::new(&model, against);
-    while let Some(page) = path.next_page().await? {
-        let push = |curve: &mut Curve, Stored { increment, .. }: Stored| {
-            curve.push(&increment);
-            Ok(())
-        };
-        curve = path.each(page, curve, push).await?;
-    }
+    let curve = over_path(&mut path, job.last_index, Curve::new(&model, against), Curve::push).await?;
     let bytes = BYTES_OF_A_POINT * curve.places().count();
     match offload.run(bytes, move || draw_curve(&curve).and_then(encode)).await {
         Ok(drawn) => tag::bytes(&headers, job.status.is_ended(), [(header::CONTENT_TYPE, media_type)], drawn),
@@ -105,4 +93,28 @@ async fn picture(
         }
         Err(_) => Err(nothing("no increment of it has that displacement")),
     }
+}
+
+/// Does for every increment up to the last one that was there what changes a state: a path that grows meanwhile adds none.
+async fn over_path<T: Send + 'static>(
+    path: &mut StoredPath,
+    last: Option<u64>,
+    mut state: T,
+    change: fn(&mut T, &Increment),
+) -> io::Result<T> {
+    let is_there = move |index: u64| last.is_some_and(|last| index <= last);
+    while let Some(page) = path.next_page().await? {
+        let grows = page.last().is_some_and(|line| !is_there(line.index));
+        let push = move |state: &mut T, Stored { increment, .. }: Stored| {
+            if is_there(increment.index) {
+                change(state, &increment);
+            }
+            Ok(())
+        };
+        state = path.each(page, state, push).await?;
+        if grows {
+            break;
+        }
+    }
+    Ok(state)
 }
