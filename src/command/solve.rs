@@ -1,7 +1,7 @@
 //! `arcslip solve`: traces the path of a model and writes one line per increment as it converges.
 
 use crate::command::options::{bounds, input};
-use crate::command::output::outcome::{Failure, Outcome};
+use crate::command::output::outcome::{Failure, Outcome, tell};
 use crate::command::output::path_file::{Format, PathFile};
 use crate::command::output::picture_file::PictureFile;
 use crate::command::output::written::{folders_exist, is_standard_output, one_on_standard_output};
@@ -47,7 +47,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let request = arguments.model.read()?;
     // Checked before the file is opened, so that a mistake does not overwrite an earlier result.
     let plan = PathSolver.plan(&request).map_err(input::refused)?;
-    plan.warnings.iter().for_each(|warning| eprintln!("warning: {}: {}", warning.pointer, warning.detail));
+    tell(&plan.warnings);
     if request.analysis.explore.is_some() {
         eprintln!("explore: the directions not taken are followed by `arcslip serve` only; this traces one path");
     }

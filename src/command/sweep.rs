@@ -3,7 +3,7 @@
 use crate::check::judged::JudgedIncrement;
 use crate::command::options::{bounds, input};
 use crate::command::output::findings;
-use crate::command::output::outcome::{Failure, Outcome};
+use crate::command::output::outcome::{Failure, Outcome, tell};
 use crate::model::{Sweep, decode};
 use crate::output::json_line;
 use crate::studies::sweeps::{self, Found, Row};
@@ -89,6 +89,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mut sweep = Sweep::read(&arguments.text()?).map_err(input::refused)?;
     let threads = arguments.threads.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
     let refine = sweep.variation.refine;
+    sweep.variation.warnings = sweeps::check(&sweep, 0..sweep.runs(), threads).map_err(input::refused)?;
+    tell(&sweep.variation.warnings);
     let progress = findings::progress_bar(sweep.runs() + refine);
     let written = arguments.paths.as_deref().map(Paths::in_folder).transpose()?;
     let accept = |run: u64, judged: &JudgedIncrement| match &written {
@@ -109,7 +111,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
         if values.is_empty() {
             break;
         }
-        let traced = sweep.add_values(values).and_then(|runs| sweeps::run(&sweep, runs, threads, &accept, &done));
+        let traced = sweep.add_values(values).and_then(|runs| {
+            sweeps::check(&sweep, runs.clone(), threads)?;
+            sweeps::run(&sweep, runs, threads, &accept, &done)
+        });
         match traced {
             Ok(further) => rows.extend(further),
             Err(errors) => {

@@ -70,7 +70,7 @@ impl Sweep {
         }
         if mistakes.is_empty() {
             let (combine, responses, refine) = (form.combine, form.responses, form.refine);
-            let variation = Variation { parameters, combine, responses, refine };
+            let variation = Variation { parameters, combine, responses, refine, warnings: Vec::new() };
             let template = Template::new(base, &places, &variation.values(0));
             Ok(Self { name, variation, runs, template })
         } else {

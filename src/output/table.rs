@@ -2,7 +2,7 @@
 //!
 //! The request determines the columns: one for every component of every recorded node, a group for every contact that may
 //! have a row, such as `tip.x`, `tip.y`, `tip/floor.status`, `tip/floor.gap`, and the forces of recorded elements and supports,
-//! such as `elements/0.axial_force` and `pin.reaction.x`. A node with a rotation has it last, as `tip.rz`; a beam has the forces and
+//! such as `elements/0.axial_force` and `pin.reaction.x`. A second contact of one node with one obstacle is `tip/floor#2`. A node with a rotation has it last, as `tip.rz`; a beam has the forces and
 //! the moment of its two ends, `elements/0.start.axial_force` and so on. Values are assigned by name; missing values are empty cells.
 
 use crate::check::measure::Errors;
@@ -12,7 +12,7 @@ use crate::model::request::{Contact, Element, Record};
 use crate::output::csv::{Cells, ChosenCells, CsvRow};
 use crate::result::increment::{DeadLoadStability, Diagnostics, Increment, Instability, PointKind, Status};
 use serde_json::Value;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -110,11 +110,23 @@ pub(crate) fn at_end(dimension: usize) -> &'static [&'static str] {
 struct ContactColumns {
     node: String,
     obstacle: String,
+    /// Which of the contacts of this node with this obstacle, from 1.
+    number: usize,
+}
+
+impl ContactColumns {
+    /// `tip/floor`, and `tip/floor#2` of a further contact of the same two.
+    fn label(&self) -> String {
+        match self.number {
+            0 | 1 => format!("{}/{}", self.node, self.obstacle),
+            further => format!("{}/{}#{further}", self.node, self.obstacle),
+        }
+    }
 }
 
 impl Table {
     /// The table of the path of a request.
-    pub fn of(request: &JobRequest) -> Self {
+    pub fn of<'r>(request: &'r JobRequest) -> Self {
         let (model, record) = (&request.model, request.analysis.record.as_ref());
         let named = record.and_then(|record| record.nodes.as_ref());
         let named: Option<HashSet<&String>> = named.map(|nodes| nodes.iter().collect());
@@ -131,9 +143,12 @@ impl Table {
         let contacts = model.contacts.iter().filter(|contact| {
             named.as_ref().is_none_or(|named| named.contains(&(contact.node.as_str(), contact.counterpart())))
         });
-        let columns = |contact: &Contact| ContactColumns {
-            node: contact.node.clone(),
-            obstacle: contact.counterpart().to_owned(),
+        let mut numbers: HashMap<(&str, &str), usize> = HashMap::new();
+        let mut columns = |contact: &'r Contact| {
+            let number = numbers.entry((contact.node.as_str(), contact.counterpart())).or_default();
+            *number += 1;
+            let (node, obstacle) = (contact.node.clone(), contact.counterpart().to_owned());
+            ContactColumns { node, obstacle, number: *number }
         };
         let element = |place: usize| ElementColumns {
             place: place as u64,
@@ -149,7 +164,7 @@ impl Table {
         Self {
             dimension: model.dimension,
             nodes,
-            contacts: contacts.map(columns).collect(),
+            contacts: contacts.map(&mut columns).collect(),
             elements: recorded_elements(request).into_iter().map(element).collect(),
             supports: recorded_supports(request).into_iter().map(node_columns).collect(),
             has_stability: record.is_some_and(|record| record.stability),
@@ -166,12 +181,13 @@ impl Table {
         for node in &self.nodes {
             names.extend(node.names("", self.dimension));
         }
-        for ContactColumns { node, obstacle } in &self.contacts {
-            names.extend(["status", "gap", "normal_reaction"].map(|name| format!("{node}/{obstacle}.{name}")));
+        for contact in &self.contacts {
+            let label = contact.label();
+            names.extend(["status", "gap", "normal_reaction"].map(|name| format!("{label}.{name}")));
             for name in ["tangential_reaction", "slip", "slip_total"] {
-                names.extend((1..self.dimension).map(|tangent| format!("{node}/{obstacle}.{name}.{tangent}")));
+                names.extend((1..self.dimension).map(|tangent| format!("{label}.{name}.{tangent}")));
             }
-            names.extend(axes().map(|axis| format!("{node}/{obstacle}.reaction.{axis}")));
+            names.extend(axes().map(|axis| format!("{label}.reaction.{axis}")));
         }
         for ElementColumns { label, forces, .. } in &self.elements {
             match forces {

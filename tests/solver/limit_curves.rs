@@ -240,7 +240,10 @@ fn a_change_before_the_limit_point_vanishes(step: f64) {
     let found = followed(&curve).expect("a curve");
     ended(&found);
     let changes: Vec<&CurveRow> = found.rows.iter().filter(|row| row.codimension_two).collect();
-    let [change] = changes[..] else { panic!("{changes:?}, {:?}", found.summary) };
+    let [other, change] = changes[..] else { panic!("{changes:?}, {:?}", found.summary) };
+    let event = other.event.as_deref().expect("an event");
+    assert!(event.starts_with("the path leaves the nonsmooth limit point along another direction"), "{event}");
+    the_direction_changes_at(&curve, other);
     let event = change.event.as_deref().expect("an event");
     assert!(event.ends_with("the nonsmooth limit point becomes a smooth limit point"), "{event}");
     assert!((0.3068..0.3069).contains(&change.value), "{}", change.value);
@@ -248,12 +251,22 @@ fn a_change_before_the_limit_point_vanishes(step: f64) {
         let kind = if row.value <= change.value { PointKind::NonsmoothLimit } else { PointKind::SmoothLimit };
         assert_eq!(row.kind, kind, "{}", row.value);
     }
-    // From 0.3064 to the change the path leaves the limit point along its other direction, whose dissipation has become the
-    // larger one there: the curve goes on along its own.
-    let clear = found.rows.iter().filter(|row| !(0.3064..=change.value).contains(&row.value));
+    // From there to the change the path leaves the limit point along its other direction: the curve goes on along its own.
+    let clear = found.rows.iter().filter(|row| !(other.value..=change.value).contains(&row.value));
     let off = clear.map(|row| off_path(&curve, row).unwrap_or(f64::INFINITY)).fold(0.0, f64::max);
     println!("{off:e} from paths of their own");
     assert!(off <= 1e-8, "{off:e}");
+}
+
+/// A path just before has this limit point; one just past it leaves the same state along a direction in which the load goes on.
+fn the_direction_changes_at(curve: &ParameterCurve, row: &CurveRow) {
+    let off = |shift: f64| {
+        let beside = CurveRow { value: row.value + shift, ..row.clone() };
+        off_path(curve, &beside).unwrap_or(f64::INFINITY)
+    };
+    let (before, past) = (off(-1e-6), off(1e-6));
+    println!("the path prefers another direction at {}: off by {before:e} before, {past:e} past it", row.value);
+    assert!(before < 1e-4 && past > 1e-3, "{before:e}, {past:e}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The outcome of a command: its exit status, or why it failed.
 
 use crate::model::InputErrors;
+use crate::result::plan::Warning;
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -26,6 +27,11 @@ impl Failure {
 }
 
 pub(crate) type Outcome = Result<ExitCode, Failure>;
+
+/// Tells what may be a mistake.
+pub(crate) fn tell(warnings: &[Warning]) {
+    warnings.iter().for_each(|warning| eprintln!("warning: {}: {}", warning.pointer, warning.detail));
+}
 
 /// Writes to standard output, which may be closed.
 pub(crate) fn say(text: impl std::fmt::Display) -> Result<(), Failure> {

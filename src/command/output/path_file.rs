@@ -55,8 +55,9 @@ impl Format {
             }
         };
         if is_standard_output(place) && matches!(format, Self::Pvd | Self::Parquet) {
-            let what = "--out: this format is of several files; give the name of one, such as `path.pvd`";
-            return Err(Failure::Input(vec![what.to_owned()]));
+            let example = if format == Self::Pvd { "path.pvd" } else { "path.parquet" };
+            let what = format!("--out: this format is of several files; give the name of one, such as `{example}`");
+            return Err(Failure::Input(vec![what]));
         }
         Ok(format)
     }
@@ -95,7 +96,7 @@ impl PathFile {
             Format::Pvd => Self::Pvd(Box::new(PvdFile::open(place, request).map_err(failed)?)),
             Format::Parquet => {
                 let open = |table| Ok(BufWriter::new(File::create(file_of(place, table))?));
-                let sheets = PathSheets::new(request.model.dimension, open);
+                let sheets = PathSheets::new(&request.model, open);
                 Self::Parquet(Box::new(sheets.map_err(|error| failed(from_parquet(error)))?))
             }
         })

@@ -100,6 +100,31 @@ pub(super) fn kind_name(kind: PointKind) -> &'static str {
     }
 }
 
+/// What is told where the path takes another direction from here on, or that of the curve again.
+pub(super) fn describe_direction(history: &ContactHistory, point: usize, is_own: bool) -> String {
+    let which = if is_own { "along the direction of the curve again" } else { "along another direction, which the rule prefers from here on" };
+    format!("the path leaves {} {which}", place_name(history, point))
+}
+
+/// The number of a change on the way to the critical point, from 1, and how many there are.
+fn changes_before(history: &ContactHistory, place: usize) -> (usize, usize) {
+    let changes = |points: &[HistoryPoint]| points.iter().filter(|one| one.closing != PointClosing::StageBegin).count();
+    (changes(&history.points[..=place]), changes(&history.points) - 1)
+}
+
+/// A point of the history in words.
+fn place_name(history: &ContactHistory, place: usize) -> String {
+    let kind = kind_name(history.kind);
+    if place + 1 == history.points.len() {
+        return format!("the {kind}");
+    }
+    let (count, all) = changes_before(history, place);
+    if history.points[place].closing == PointClosing::StageBegin {
+        return "the point where a stage begins".to_owned();
+    }
+    format!("change {count} of the {all} by which it comes to the {kind}")
+}
+
 /// What happens where a condition ends.
 pub(super) fn describe(scene: &Scene, history: &ContactHistory, condition: &PathCondition) -> String {
     let kind = kind_name(history.kind);
@@ -111,8 +136,7 @@ pub(super) fn describe(scene: &Scene, history: &ContactHistory, condition: &Path
     if point.closing == PointClosing::StageBegin {
         return format!("{what} where stage \"{}\" begins", scene.stages[point.stage].name);
     }
-    let changes = |points: &[HistoryPoint]| points.iter().filter(|one| one.closing != PointClosing::StageBegin).count();
-    let (count, all) = (changes(&history.points[..=condition.point]), changes(&history.points) - 1);
+    let (count, all) = changes_before(history, condition.point);
     format!("{what} at change {count} of the {all} by which the path comes to the {kind}")
 }
 

@@ -6,9 +6,10 @@ use crate::continuation::critical_curve::curve_outcome::{CurveEnd, CurveFailure,
 use crate::continuation::critical_curve::curve_position::{CurvePosition, SceneFamily, extrapolated};
 use crate::continuation::critical_curve::last_points::LastPoints;
 use crate::continuation::critical_curve::solved_history::{PathCondition, SolvedHistory};
+use crate::continuation::critical_curve::taken_directions::TakenDirections;
 use crate::continuation::critical_curve::tolerances::{
-    FIRST_DEVIATION, FOUND_ZERO, LARGEST_DEVIATION, MODEL_STEP, PASSED, PAST_CHANGE, SAME_POINT, SHORTEST_CHORD,
-    SHORTEST_STEP, STEP_GROWTH, STEP_ROUND_OFF, TURNING_STEP, UNLOCATED_STEPS,
+    FIRST_DEVIATION, FOUND_ZERO, LARGEST_DEVIATION, MODEL_STEP, PASSED, PAST_CHANGE, PREFERENCE_WIDTH, SAME_POINT,
+    SHORTEST_CHORD, SHORTEST_STEP, STEP_GROWTH, STEP_ROUND_OFF, TURNING_STEP, UNLOCATED_STEPS,
 };
 use crate::continuation::critical_curve::traced_history::{self, CurveRefusal, CurveStart};
 use crate::continuation::critical_curve::traced_paths::TracedPaths;
@@ -60,6 +61,15 @@ enum Stopped {
     Ended(DirectionEnd),
 }
 
+/// Where a path comes to take another direction at a point of the history than it took before.
+struct OtherDirection {
+    scene: Scene,
+    at: SolvedHistory,
+    taken: TakenDirections,
+    /// Place of the point in the history.
+    point: usize,
+}
+
 /// The curve as it is followed in one direction.
 struct Walk {
     place: CurvePosition,
@@ -68,6 +78,8 @@ struct Walk {
     /// The next step of the parameter.
     step: f64,
     has_turned: bool,
+    /// The directions that the path takes at the points of the history; `None` until they have been looked at.
+    taken: Option<TakenDirections>,
 }
 
 impl Walk {
@@ -152,7 +164,7 @@ impl<'a> CriticalCurve<'a> {
         accept: AcceptPoint<'_>,
     ) -> Stopped {
         let first = begin.here.critical().clone();
-        let mut walk = Walk { place: begin, sense, step: self.range.step, has_turned: false };
+        let mut walk = Walk { place: begin, sense, step: self.range.step, has_turned: false, taken: None };
         loop {
             if walk.place.here.parameter == walk.target(&self.range) {
                 return Stopped::Ended(DirectionEnd::Range);
@@ -205,6 +217,9 @@ impl<'a> CriticalCurve<'a> {
         };
         let broken = solved.ended_since(&walk.place.here);
         if broken.is_empty() {
+            if let Some(other) = self.other_direction(walk, &solved, &scene) {
+                return self.go_on_beside(walk, other, paths, accept);
+            }
             walk.step = (walk.step * STEP_GROWTH).min(self.range.step);
             return self.send(&scene, &mut walk.place, solved, accept);
         }
@@ -224,6 +239,66 @@ impl<'a> CriticalCurve<'a> {
             return ControlFlow::Break(Stopped::Ended(DirectionEnd::Range));
         }
         self.go_on_past(walk, (&change, 0.0), paths, accept, || what)
+    }
+
+    /// Where the path comes to take another direction at a point of the history, between the last point of the curve and a
+    /// solved one; the directions at the solved one are kept where it does not.
+    fn other_direction(&self, walk: &mut Walk, solved: &SolvedHistory, scene: &Scene) -> Option<OtherDirection> {
+        let CurvePosition { history, here, .. } = &walk.place;
+        let at = |scene: &Scene, solved: &SolvedHistory| TakenDirections::of(history, scene, solved, &self.cancel);
+        let before = match walk.taken.take() {
+            Some(taken) => taken,
+            None => at(&(self.family)(here.parameter).ok()?, here),
+        };
+        let after = at(scene, solved);
+        if before.first_difference(&after).is_none() || self.cancel.is_cancelled() {
+            walk.taken = Some(after);
+            return None;
+        }
+        let mut work = Work::default();
+        let (mut low, mut high) = (here.parameter, solved.parameter);
+        let mut found = (scene.clone(), solved.clone(), after);
+        while (high - low).abs() > PREFERENCE_WIDTH * (self.range.to - self.range.from) {
+            let middle = low.midpoint(high);
+            let Ok(scene) = (self.family)(middle) else { break };
+            let guesses = extrapolated(&walk.place, &scene, middle);
+            let Some(solved) = SolvedHistory::of(history, &scene, middle, &guesses, &mut work) else { break };
+            let taken = at(&scene, &solved);
+            if before.first_difference(&taken).is_none() {
+                low = middle;
+            } else {
+                (high, found) = (middle, (scene, solved, taken));
+            }
+        }
+        let (scene, at, taken) = found;
+        let point = before.first_difference(&taken)?;
+        Some(OtherDirection { scene, at, taken, point })
+    }
+
+    /// Tells where the path takes another direction from here on. Where that is at the critical point the curve goes on;
+    /// where it is before, the path comes to the critical point no more, unless one that is traced past the change does.
+    fn go_on_beside(
+        &mut self,
+        walk: &mut Walk,
+        OtherDirection { scene, at, taken, point }: OtherDirection,
+        paths: &mut TracedPaths<'_>,
+        accept: AcceptPoint<'_>,
+    ) -> ControlFlow<Stopped> {
+        let what = critical_point::describe_direction(&walk.place.history, point, taken.is_taken_at(point));
+        let at_change = CurvePosition { here: at.clone(), history: walk.place.history.clone(), before: None };
+        let note = PointNote { event: Some(what.clone()), codimension_two: true, from_path: false };
+        if point + 1 < walk.place.history.points.len() && !taken.is_taken_at(point) {
+            // Where a change of contact is about to vanish, the direction before it is in doubt a little earlier.
+            let slack = self.slack(&walk.place);
+            let past = self.go_on_past(walk, (&at, slack), paths, accept, || what);
+            if let ControlFlow::Break(Stopped::Ended(_)) = past {
+                flow(self.emit(&scene, &at_change, note, accept))?;
+            }
+            return past;
+        }
+        flow(self.emit(&scene, &at_change, note, accept))?;
+        (walk.place.before, walk.taken) = (Some(std::mem::replace(&mut walk.place.here, at)), Some(taken));
+        ControlFlow::Continue(())
     }
 
     /// Goes round a point where the curve turns back in the parameter.
@@ -335,7 +410,7 @@ impl<'a> CriticalCurve<'a> {
                 if slack > 0.0 && position.history.kind != walk.place.history.kind {
                     self.tell_change_of_kind(walk, change, &position, accept)?;
                 }
-                (walk.place, walk.step) = (position, self.range.step);
+                (walk.place, walk.step, walk.taken) = (position, self.range.step, None);
                 let note = PointNote { event: None, codimension_two: false, from_path: true };
                 return flow(self.emit(&scene, &walk.place, note, accept));
             }

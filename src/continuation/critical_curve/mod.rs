@@ -17,7 +17,8 @@
 //! Along the curve the conditions under which a path passes through these points are watched. Where one of them ends, the
 //! critical point changes its kind, or the path to it its changes of contact: a point of codimension two, which is located
 //! in the parameter. Past it the path itself is traced once more, and its critical point at the same place goes on with the
-//! curve; where there is none, the curve ends, and this is said. Where two limit points meet, the curve turns back in the
+//! curve; where there is none, the curve ends, and this is said. The selection rule is watched in the same way: where the path
+//! comes to prefer another direction at one of the points, that is located and told (`taken_directions`). Where two limit points meet, the curve turns back in the
 //! parameter and goes on along the other one (`turning_point`). At each end one of the last points is compared with a path.
 //!
 //! | file | contents |
@@ -25,6 +26,7 @@
 //! | `contact_history` | the points by which a path comes to a critical point |
 //! | `branch_point_location` | one of these points, by Newton's method along the branch of its mode |
 //! | `solved_history` | all of them at one value of the parameter, and the conditions of the path |
+//! | `taken_directions` | whether the path takes the directions of the history at its points |
 //! | `traced_history` | the history of a path, traced for it |
 //! | `curve`, `curve_position` | the curve, from point to point |
 //! | `traced_paths`, `last_points` | paths to go on past a change, and to compare the ends of the curve with |
@@ -40,6 +42,7 @@ pub(crate) mod curve_outcome;
 pub(crate) mod curve_position;
 mod last_points;
 mod solved_history;
+mod taken_directions;
 mod tolerances;
 pub(crate) mod traced_history;
 mod traced_paths;

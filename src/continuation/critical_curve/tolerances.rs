@@ -74,6 +74,13 @@ pub(crate) const ON_PATH: f64 = 1e-6;
 /// Points of two histories coincide within this (dimensionless displacement and load).
 pub(crate) const SAME_POINT: f64 = 1e-7;
 
+/// Directions whose cosine is this close to 1 are the same: both solve the rate equations to some 1e-9, and others differ by far
+/// more.
+pub(crate) const SAME_DIRECTION: f64 = 1e-6;
+
+/// Width, relative to the range of the parameter, within which the value is found from which on a path takes another direction.
+pub(crate) const PREFERENCE_WIDTH: f64 = 1e-11;
+
 /// The point asked for and the one on a path with all of its contact changes resolved coincide within this (dimensionless):
 /// a limit point is flat.
 pub(crate) const ASKED_POINT: f64 = 1e-4;

@@ -366,10 +366,9 @@ fn every_mistake_is_listed_with_its_place() {
 fn a_flood_of_mistakes_is_bounded() {
     let flood = |elements: String| errors(&format!("{{\"model\": {{\"elements\": [{elements}0]}}}}")).0;
     let same = flood("0,".repeat(100_000));
-    assert!(same.len() < 10, "repeats are counted: {}", same.len());
-    let different = flood((0..100_000).map(|kind| format!("{{\"kind\": \"k{kind}\"}},")).collect());
-    assert_eq!(different.len(), crate::model::input::limits::MAX_LISTED_MISTAKES + 1);
-    for errors in [same, different] {
-        assert!(errors.last().unwrap().detail.contains("more mistakes are not listed"));
+    let other_names = flood((0..100_000).map(|kind| format!("{{\"kind\": \"k{kind}\"}},")).collect());
+    for errors in [same, other_names] {
+        assert!(errors.len() < 10, "repeats are counted: {}", errors.len());
+        assert!(errors.iter().any(|error| error.detail.contains("more places have such a mistake")), "{errors:?}");
     }
 }

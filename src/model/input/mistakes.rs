@@ -57,31 +57,66 @@ impl<'a> DocumentPlace<'a> {
 /// Places at which a repeated mistake is listed.
 const MOST_REPEATS: usize = 5;
 
-/// Collects mistakes up to [`MAX_LISTED_MISTAKES`] and counts the rest.
+/// Collects mistakes: of those that are alike the first [`MOST_REPEATS`], and up to [`MAX_LISTED_MISTAKES`] in all; the
+/// others are counted.
 #[derive(Debug, Default)]
 pub(crate) struct Mistakes {
     listed: Vec<InputError>,
+    kinds: HashMap<Kind, Repeats>,
     unlisted: usize,
 }
 
+/// What mistakes share that repeat one another: what is wrong, but for names and numbers, how deep in the document, and at
+/// which member.
+type Kind = (String, usize, String);
+
+#[derive(Debug, Default)]
+struct Repeats {
+    count: usize,
+    /// Place in the list of the last one that is listed.
+    last: usize,
+}
+
 impl Mistakes {
-    /// `detail` is only made where the mistake is listed: a document can hold a million of them.
     pub fn add<Text: Into<String>>(&mut self, at: &DocumentPlace, detail: impl FnOnce() -> Text) {
-        if self.listed.len() < MAX_LISTED_MISTAKES {
-            self.listed.push(InputError::new(at.pointer(), detail()));
-        } else {
+        let error = InputError::new(at.pointer(), detail());
+        let kind = kind_of(&error);
+        let is_full = self.listed.len() >= MAX_LISTED_MISTAKES;
+        if is_full && !self.kinds.contains_key(&kind) {
             self.unlisted += 1;
+            return;
+        }
+        let repeats = self.kinds.entry(kind).or_default();
+        repeats.count += 1;
+        if !is_full && repeats.count <= MOST_REPEATS {
+            repeats.last = self.listed.len();
+            self.listed.push(error);
         }
     }
 
     pub fn count(&self) -> usize {
-        self.listed.len() + self.unlisted
+        self.kinds.values().map(|repeats| repeats.count).sum::<usize>() + self.unlisted
     }
 
-    /// The mistakes as an error, if there are any. Of a mistake that many places share the first few are listed, and the
-    /// others counted.
+    /// The mistakes as an error, if there are any.
     pub fn into_result(mut self) -> Result<(), InputErrors> {
-        self.listed = grouped(self.listed);
+        let mut left: Vec<usize> = vec![0; self.listed.len()];
+        for (place, error) in self.listed.iter().enumerate() {
+            // Each listed one takes itself off the count at the last one of its kind.
+            if let Some(repeats) = self.kinds.get_mut(&kind_of(error)) {
+                repeats.count = repeats.count.saturating_sub(1);
+                if repeats.last == place {
+                    left[place] = repeats.count;
+                }
+            }
+        }
+        for (error, left) in self.listed.iter_mut().zip(left) {
+            match left {
+                0 => {}
+                1 => error.detail.push_str("; 1 more place has such a mistake"),
+                more => error.detail.push_str(&format!("; {more} more places have such a mistake")),
+            }
+        }
         if self.unlisted > 0 {
             let more = format!("{} more mistakes are not listed", self.unlisted);
             self.listed.push(InputError::new("", more));
@@ -90,34 +125,15 @@ impl Mistakes {
     }
 }
 
-/// The mistakes in their order, with one in place of those that repeat others at places of the same kind.
-fn grouped(listed: Vec<InputError>) -> Vec<InputError> {
-    let mut counts: HashMap<(String, usize, String), usize> = HashMap::new();
-    for error in &listed {
-        *counts.entry(kind_of(error)).or_default() += 1;
-    }
-    let mut seen: HashMap<(String, usize, String), usize> = HashMap::new();
-    let mut kept = Vec::new();
-    for mut error in listed {
-        let kind = kind_of(&error);
-        let count = counts.get(&kind).copied().unwrap_or_default();
-        let seen = seen.entry(kind).or_default();
-        *seen += 1;
-        if count <= MOST_REPEATS || *seen < MOST_REPEATS {
-            kept.push(error);
-        } else if *seen == MOST_REPEATS {
-            error.detail = format!("{}; {} more places have the same mistake", error.detail, count - MOST_REPEATS);
-            kept.push(error);
-        }
-    }
-    kept
+fn kind_of(error: &InputError) -> Kind {
+    let last = error.pointer.rsplit('/').next().unwrap_or_default();
+    (without_names(&error.detail), error.pointer.matches('/').count(), without_names(last))
 }
 
-/// What mistakes share that repeat one another: what is wrong, how deep in the document, and at which member.
-fn kind_of(error: &InputError) -> (String, usize, String) {
-    let last = error.pointer.rsplit('/').next().unwrap_or_default();
-    let last = if last.bytes().all(|byte| byte.is_ascii_digit()) { "" } else { last };
-    (error.detail.clone(), error.pointer.matches('/').count(), last.to_owned())
+/// A text without digits and without what stands between backquotes.
+fn without_names(text: &str) -> String {
+    let outside = text.split('`').step_by(2);
+    outside.flat_map(str::chars).filter(|letter| !letter.is_ascii_digit()).collect()
 }
 
 #[cfg(test)]
@@ -138,7 +154,8 @@ mod tests {
     fn mistakes_past_the_bound_are_counted() {
         let mut mistakes = Mistakes::default();
         for index in 0..MAX_LISTED_MISTAKES + 7 {
-            mistakes.add(&DocumentPlace::ROOT.index(index), || format!("wrong: {index}"));
+            let letters = format!("wrong: {}{}", char::from(b'a' + (index % 26) as u8), "!".repeat(index / 26));
+            mistakes.add(&DocumentPlace::ROOT.index(index), || letters);
         }
         assert_eq!(mistakes.count(), MAX_LISTED_MISTAKES + 7);
         let errors = mistakes.into_result().unwrap_err().0;
@@ -156,12 +173,25 @@ mod tests {
                 mistakes.add(&contacts.index(index).member("node"), || "no such node");
             }
         }
+        assert_eq!(mistakes.count(), 44);
         let errors = mistakes.into_result().unwrap_err().0;
         assert_eq!(errors.len(), MOST_REPEATS + 4);
         let last = errors.iter().rfind(|error| error.pointer.ends_with("/mu")).unwrap();
         assert_eq!(
             (last.pointer.as_str(), &*last.detail),
-            ("/contacts/4/mu", "no such member; 35 more places have the same mistake")
+            ("/contacts/4/mu", "no such member; 35 more places have such a mistake")
         );
+    }
+    #[test]
+    fn mistakes_that_differ_in_names_and_numbers_alone_are_of_one_kind() {
+        let mut mistakes = Mistakes::default();
+        let elements = DocumentPlace::ROOT.member("elements");
+        for index in 0..243 {
+            let (element, detail) = (elements.index(index), format!("there is no node `m{index}`"));
+            mistakes.add(&element.member("nodes").index(index % 2), || detail);
+        }
+        let errors = mistakes.into_result().unwrap_err().0;
+        assert_eq!(errors.len(), MOST_REPEATS);
+        assert!(errors[4].detail.ends_with("`m4`; 238 more places have such a mistake"), "{}", errors[4].detail);
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::model::request::response::Response;
 use crate::model::request::{Analysis, Model};
+use crate::result::plan::Warning;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -76,6 +77,9 @@ pub struct Variation {
     /// Further runs at most, where the first response changes most.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub refine: u64,
+    /// What is valid in its runs and may be a mistake.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<Warning>,
 }
 
 impl Variation {

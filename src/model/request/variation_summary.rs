@@ -100,6 +100,7 @@ mod tests {
             combine: Combine::List,
             responses: Default::default(),
             refine: 0,
+            warnings: Vec::new(),
         }
     }
 

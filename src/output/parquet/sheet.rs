@@ -4,6 +4,7 @@ use parquet::basic::{Compression, ConvertedType, Repetition, Type as PhysicalTyp
 use parquet::column::writer::ColumnWriter;
 use parquet::data_type::ByteArray;
 use parquet::errors::{ParquetError, Result};
+use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
@@ -59,11 +60,11 @@ pub struct Sheet<To: Write + Send> {
 }
 
 impl<To: Write + Send> Sheet<To> {
-    /// A file with columns of these names and kinds.
+    /// A file with columns of these names and kinds; `about` is what readers find beside the columns, by key.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn new(to: To, columns: &[(String, Kind)]) -> Result<Self> {
+    pub fn new(to: To, columns: &[(String, Kind)], about: Vec<KeyValue>) -> Result<Self> {
         let fields = columns.iter().map(|(name, kind)| {
             let (physical, converted) = match kind {
                 Kind::Integer => (PhysicalType::INT64, ConvertedType::NONE),
@@ -75,7 +76,9 @@ impl<To: Write + Send> Sheet<To> {
             field.with_converted_type(converted).build().map(Arc::new)
         });
         let schema = Type::group_type_builder("path").with_fields(fields.collect::<Result<_>>()?).build()?;
-        let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();
+        let about = (!about.is_empty()).then_some(about);
+        let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).set_key_value_metadata(about);
+        let properties = properties.build();
         let file = SerializedFileWriter::new(to, Arc::new(schema), Arc::new(properties))?;
         let columns = columns.iter().map(|(_, kind)| Column {
             values: match kind {

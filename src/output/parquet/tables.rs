@@ -1,10 +1,13 @@
 //! The tables of a path, and the rows that an increment adds to each.
 
 use crate::check::measure::Errors;
+use crate::model::Model;
+use crate::model::request::Units;
 use crate::output::parquet::sheet::{Cell, Kind, Sheet};
 use crate::output::table::{AXES, beam_forces, counts, point_kind, status, stress_components};
 use crate::result::increment::{Diagnostics, Increment};
 use parquet::errors::Result;
+use parquet::file::metadata::KeyValue;
 use std::io::Write;
 
 /// A table of a path.
@@ -37,11 +40,12 @@ impl PathTable {
         }
     }
 
-    /// The table's file, without rows, for a model of this dimension.
+    /// The table's file, without rows, for a model of this dimension. The labels of the model's units stand in its metadata,
+    /// as `units.length` and `units.force`.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn sheet<To: Write + Send>(self, to: To, dimension: usize) -> Result<Sheet<To>> {
+    pub fn sheet<To: Write + Send>(self, to: To, dimension: usize, units: Option<&Units>) -> Result<Sheet<To>> {
         let mut columns = vec![("index".to_owned(), Kind::Integer)];
         let mut add = |name: &str, kind| columns.push((name.to_owned(), kind));
         match self {
@@ -99,7 +103,7 @@ impl PathTable {
                 add("indeterminate", Kind::Flag);
             }
         }
-        Sheet::new(to, &columns)
+        Sheet::new(to, &columns, about(units))
     }
 
     /// Adds the rows of an increment.
@@ -193,6 +197,13 @@ fn push_increment<To: Write + Send>(
     sheet.push(&row)
 }
 
+/// The labels of units, for readers of a file.
+fn about(units: Option<&Units>) -> Vec<KeyValue> {
+    let Some(Units { length, force }) = units else { return Vec::new() };
+    let labels = [("units.length", length), ("units.force", force)];
+    labels.into_iter().filter_map(|(key, label)| Some(KeyValue::new(key.to_owned(), label.clone()?))).collect()
+}
+
 /// As many cells as asked for, empty where there is no component.
 fn components<'a>(values: &[f64], count: usize) -> impl Iterator<Item = Cell<'a>> + use<'a> {
     let mut cells = [Cell::Empty; MOST];
@@ -211,9 +222,10 @@ impl<To: Write + Send> PathSheets<To> {
     ///
     /// # Errors
     /// A file cannot be opened or written.
-    pub fn new(dimension: usize, open: impl Fn(PathTable) -> Result<To>) -> Result<Self> {
+    pub fn new(model: &Model, open: impl Fn(PathTable) -> Result<To>) -> Result<Self> {
         let [increments, nodes, elements, contacts] = PathTable::ALL;
-        let sheet = |table: PathTable| table.sheet(open(table)?, dimension);
+        let dimension = model.dimension;
+        let sheet = |table: PathTable| table.sheet(open(table)?, dimension, model.units.as_ref());
         Ok(Self { dimension, sheets: [sheet(increments)?, sheet(nodes)?, sheet(elements)?, sheet(contacts)?] })
     }
 

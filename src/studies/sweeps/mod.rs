@@ -23,5 +23,5 @@ pub use found::{Found, Row};
 pub use limit_load::LimitLoad;
 pub use refinement::further_values;
 pub use responses::ResponseFinder;
-pub use run::run;
+pub use run::{check, run};
 pub use table::shown;

@@ -115,7 +115,8 @@ impl SoughtResponse {
         let column = |member: &'static str, name: &str| {
             let known = || suggestion(name, names.iter().map(String::as_str));
             let found = names.iter().position(|known| known == name);
-            found.ok_or_else(|| (member, format!("the path has no column {}{}", quoted(name), known())))
+            let unrecorded = "; an increment has what `analysis.record` asks for";
+            found.ok_or_else(|| (member, format!("the path has no column {}{}{unrecorded}", quoted(name), known())))
         };
         let at = match &response.at {
             ResponsePlace::Named(NamedPlace::FirstLimit) => ResponseLocation::FirstLimit,

@@ -7,6 +7,7 @@ use crate::output::columns::name_of;
 use crate::resources::budget::{self, Budget};
 use crate::resources::cancel::CancelFlag;
 use crate::resources::panics;
+use crate::result::plan::Warning;
 use crate::result::stop_reason::Outcome;
 use crate::studies::sweeps::{LimitLoad, ResponseFinder, Row};
 use std::num::NonZeroUsize;
@@ -25,7 +26,7 @@ pub type Accept<'a> = &'a (dyn Fn(u64, &JudgedIncrement) -> ControlFlow<()> + Sy
 /// run that has ended.
 ///
 /// # Errors
-/// Mistakes in the runs, all of which are checked before the first one is traced.
+/// Mistakes in the runs; [`check`] tells them before the first one is traced.
 pub fn run(
     sweep: &Sweep,
     runs: Range<u64>,
@@ -33,7 +34,6 @@ pub fn run(
     accept: Accept<'_>,
     done: &(dyn Fn(&Row) + Sync),
 ) -> Result<Vec<Row>, InputErrors> {
-    check(sweep, runs.clone(), threads)?;
     let rows = on_threads(runs, threads, |run| {
         let traced = catch_unwind(AssertUnwindSafe(|| trace(sweep, run, accept)));
         let row = traced.unwrap_or_else(|panic| Ok(panicked(sweep, run, &panics::text(panic.as_ref()))))?;
@@ -43,16 +43,25 @@ pub fn run(
     rows.into_iter().collect()
 }
 
-/// Checks these runs.
-fn check(sweep: &Sweep, runs: Range<u64>, threads: NonZeroUsize) -> Result<(), InputErrors> {
+/// Checks these runs and answers what may be a mistake in them.
+///
+/// # Errors
+/// Mistakes in the runs.
+pub fn check(sweep: &Sweep, runs: Range<u64>, threads: NonZeroUsize) -> Result<Vec<Warning>, InputErrors> {
     let checked = on_threads(runs.clone(), threads, |run| {
         let request = sweep.run(run)?.request;
         ResponseFinder::new(&sweep.variation.responses, &request)?;
-        Scene::new(&request).map_err(|errors| sweep.located(run, errors)).map(|_| ())
+        Scene::new(&request).map_err(|errors| sweep.located(run, errors)).map(|scene| scene.plan().warnings.clone())
     });
     let mut mistakes = RunMistakes::default();
     for (run, checked) in runs.zip(checked) {
-        mistakes.note(run, checked.err());
+        match checked {
+            Ok(warnings) => {
+                mistakes.note(run, None);
+                mistakes.warn(sweep, run, warnings);
+            }
+            Err(errors) => mistakes.note(run, Some(errors)),
+        }
     }
     mistakes.result(sweep)
 }

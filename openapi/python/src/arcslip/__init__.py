@@ -20,15 +20,15 @@
 
 from arcslip.client import Client, Curve, Job, Study, Sweep
 from arcslip.errors import (
-    ArcslipError, InvalidModel, JobFailed, Mistake, ProgramFailed, ProgramNotFound, Refused, Unreachable,
+    ArcslipError, InvalidModel, JobFailed, Mistake, ModelWarning, ProgramFailed, ProgramNotFound, Refused, Unreachable,
 )
 from arcslip.model import Model
 from arcslip.path import Path
 from arcslip.program import find_program, scene, solve
 
 __all__ = [
-    "ArcslipError", "Client", "Curve", "InvalidModel", "Job", "JobFailed", "Mistake", "Model", "Path", "ProgramFailed",
-    "ProgramNotFound", "Refused", "Study", "Sweep", "Unreachable", "__version__", "find_program", "scene", "solve",
+    "ArcslipError", "Client", "Curve", "InvalidModel", "Job", "JobFailed", "Mistake", "Model", "ModelWarning", "Path",
+    "ProgramFailed", "ProgramNotFound", "Refused", "Study", "Sweep", "Unreachable", "__version__", "find_program", "scene", "solve",
 ]
 
 #: The version of the package.

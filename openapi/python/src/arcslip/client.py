@@ -19,7 +19,7 @@ import urllib.request
 import uuid
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Union
 
-from arcslip.errors import ArcslipError, JobFailed, Refused, Unreachable, invalid, text_of
+from arcslip.errors import ArcslipError, JobFailed, Refused, Unreachable, invalid, text_of, warn
 from arcslip.model import Model, as_request, plain
 from arcslip.path import Path
 from arcslip.progress import shown
@@ -61,7 +61,9 @@ class Client:
     def submit(self, model: Union[Model, Mapping[str, Any]], *, key: Optional[str] = None, **analysis: Any) -> "Job":
         """Queues a job; `analysis` has settings, such as `max_increments=500`. Safe to repeat with the same `key`."""
         request = as_request(model, analysis)
-        return Job(self, self.post("/v1/jobs", request, key), request)
+        record = self.post("/v1/jobs", request, key)
+        warn(warnings_of(record.get("plan") or {}))
+        return Job(self, record, request)
 
     def check(self, model: Union[Model, Mapping[str, Any]], **analysis: Any) -> Dict[str, Any]:
         """The plan of a model: its scales, what it does not need, and warnings. Nothing is queued."""
@@ -117,7 +119,9 @@ class Client:
         request["sweep"] = {"replace": values, "combine": combine, **({"responses": plain(responses)} if responses else {})}
         if refine:
             request["sweep"]["refine"] = refine
-        return Sweep(self, self.post("/v1/sweeps", request, key))
+        record = self.post("/v1/sweeps", request, key)
+        warn(warnings_of(record))
+        return Sweep(self, record)
 
     def study(
         self, model: Union[Model, Mapping[str, Any]], settings: Optional[Mapping[str, Any]] = None,
@@ -221,6 +225,10 @@ def problem_of(text: bytes) -> Dict[str, Any]:
         # Of a proxy.
         return {"detail": text.decode(errors="replace")[:500]}
     return problem if isinstance(problem, dict) else {"detail": str(problem)}
+
+
+def warnings_of(record: Mapping[str, Any]) -> List[str]:
+    return [f"{warning['pointer']}: {warning['detail']}" for warning in record.get("warnings") or []]
 
 
 def pause_of(header: Optional[str]) -> float:

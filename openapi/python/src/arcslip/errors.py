@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-from typing import Any, Dict, List, NamedTuple, Optional, Sequence
+import warnings
+from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Sequence
 
 #: Mistakes that a message shows; the exception has all of them.
 SHOWN = 20
@@ -14,6 +15,10 @@ LONGEST = 120
 
 class ArcslipError(Exception):
     """Anything that arcslip refuses or fails at."""
+
+
+class ModelWarning(UserWarning):
+    """Something in a model that is valid and may be a mistake, such as a coefficient of friction of 30."""
 
 
 class Mistake(NamedTuple):
@@ -65,6 +70,12 @@ class ProgramNotFound(ArcslipError):
 
 class ProgramFailed(ArcslipError):
     """The program `arcslip` ended without a path."""
+
+
+def warn(told: Iterable[str], depth: int = 3) -> None:
+    """Tells what may be a mistake, as of the line that called the package; `depth` counts the calls between."""
+    for text in told:
+        warnings.warn(text, ModelWarning, stacklevel=depth)
 
 
 def value_at(document: Any, pointer: str) -> Optional[Any]:

@@ -246,6 +246,7 @@ class Model:
         surface: Optional[str] = None,
         against: Optional[str] = None,
         discretisation: Optional[str] = None,
+        **more: Any,
     ) -> int:
         """Adds a contact of a node, of the nodes of a set (`"@name"`), or of a surface, with an obstacle or `against` the
         surface of another body (`discretisation`: "mortar" or "node_to_surface"); returns its place among the contacts."""
@@ -264,7 +265,8 @@ class Model:
                 contact["discretisation"] = discretisation
         else:
             contact["obstacle"] = obstacle
-        contact["friction"] = plain(friction)
+        # The program tells what it does not know: `mu` is `friction`.
+        contact.update(plain({"friction": friction, **more}))
         self._contacts.append(contact)
         return len(self._contacts) - 1
 

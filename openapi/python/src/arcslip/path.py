@@ -79,8 +79,12 @@ class Path:
         with_rotation = [*axes, "rx", "ry", "rz"] if self.dimension == 3 else [*axes, "rz"]
         for node, vector in increment["displacements"].items():
             row.update(zip((f"{node}.{axis}" for axis in with_rotation), vector))
+        seen: Dict[str, int] = {}
         for contact in increment["contacts"]:
             own = f"{contact['node']}/{contact['obstacle']}"
+            seen[own] = seen.get(own, 0) + 1
+            if seen[own] > 1:
+                own = f"{own}#{seen[own]}"
             for name, value in contact.items():
                 if name in ("node", "obstacle"):
                     continue

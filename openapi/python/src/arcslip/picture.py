@@ -91,12 +91,26 @@ def stretches(increments: List[Dict[str, Any]]) -> List[Tuple[bool, int, int]]:
 def with_unit(path: Any, name: str) -> str:
     """The name of a quantity with its unit, where the model names units."""
     units = path.request["model"].get("units") or {}
-    last = name.rsplit(".", 1)[-1]
-    if "/" not in name and last in ("x", "y", "z") and ".reaction." not in name and "length" in units:
-        return f"{name} ({units['length']})"
-    of_force = last in ("axial_force", "normal_reaction") or ".reaction." in name or name.startswith("applied_force")
-    if of_force and "force" in units:
-        return f"{name} ({units['force']})"
-    if last in ("gap",) and "length" in units:
-        return f"{name} ({units['length']})"
-    return name.replace("load_factor", "load factor")
+    label = unit_of(name, units.get("length"), units.get("force"))
+    words = name.replace("load_factor", "load factor")
+    return f"{words} ({label})" if label else words
+
+
+def unit_of(name: str, length: Optional[str], force: Optional[str]) -> Optional[str]:
+    """The label of a column's unit; `None` where it has none, or the model does not name it."""
+    work = f"{force} {length}" if force and length else None
+    last = name.split("/")[-1]
+    steps = last.split(".")
+    what = steps[-1]
+    if "moment" in last or name in ("external_work", "strain_energy", "dissipated", "released"):
+        return work
+    if ".reaction." in name and what in ("rx", "ry", "rz"):
+        return work
+    of_force = ("axial_force", "shear_force", "normal_reaction", "tangential_reaction", "reaction", "force")
+    if any(step in of_force for step in steps) or name.startswith("applied_force"):
+        return force
+    if "stress" in steps or what == "von_mises":
+        # The plane's stress is a force by a length and by the thickness, a length too.
+        return f"{force}/{length}^2" if force and length else None
+    is_displacement = what in ("x", "y", "z") and "/" not in name
+    return length if is_displacement or any(step in ("gap", "slip", "slip_total") for step in steps) else None

@@ -9,12 +9,14 @@ import subprocess
 import threading
 from typing import Any, Callable, Dict, List, Mapping, Optional, Union
 
-from arcslip.errors import ArcslipError, ProgramFailed, ProgramNotFound, invalid, text_of
+from arcslip.errors import ArcslipError, ProgramFailed, ProgramNotFound, invalid, text_of, warn
 from arcslip.model import Model, as_request
 from arcslip.path import Path
 from arcslip.progress import shown
 
 BAD_INPUT = 2
+#: How a line of the program begins that tells of a possible mistake.
+WARNING = "warning: "
 
 
 def find_program(program: Optional[str] = None) -> str:
@@ -40,7 +42,7 @@ def solve(
     """The path of a model, or of a request as a dict; `analysis` has settings, such as `max_increments=500`.
 
     `each` is called with each increment as it converges; `progress` shows a bar (tqdm). Mistakes in the model raise
-    `InvalidModel`.
+    `InvalidModel`, and what may be a mistake is told as a `ModelWarning`.
     """
     request = as_request(model, analysis)
     if "explore" in request.get("analysis", {}):
@@ -78,7 +80,9 @@ def solve(
         solver.wait()
         listener.join()
         words.close()
-    return path_of(request, increments, status, "".join(said))
+    words_said = "".join(said)
+    warn(line[len(WARNING):] for line in words_said.splitlines() if line.startswith(WARNING))
+    return path_of(request, increments, status, words_said)
 
 
 def path_of(request: Dict[str, Any], increments: List[Dict[str, Any]], status: int, said: str) -> Path:

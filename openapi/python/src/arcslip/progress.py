@@ -10,7 +10,10 @@ def shown(increments: Iterable[Dict[str, Any]], most: Optional[int], progress: b
     if not progress:
         yield from increments
         return
-    from tqdm.auto import tqdm
+    try:
+        from tqdm.auto import tqdm
+    except ModuleNotFoundError:
+        raise ModuleNotFoundError("a progress bar needs tqdm: `pip install tqdm`; leave `progress` out without it") from None
 
     with tqdm(total=most, unit=" increments") as bar:
         for increment in increments:

@@ -253,10 +253,16 @@ impl From<JobsError> for Problem {
                 ),
             ),
             JobsError::Abandoned => Self::new(Kind::Unavailable, "the check was stopped; try again"),
-            JobsError::NoJob(id) => Self::not_found(format_args!("job {id}")),
-            JobsError::NoStudy(id) => Self::not_found(format_args!("study {id}")),
-            JobsError::NoSweep(id) => Self::not_found(format_args!("sweep {id}")),
-            JobsError::NoCurve(id) => Self::not_found(format_args!("curve {id}")),
+            JobsError::NoJob(id) => Self::not_found(format_args!("job {id}; GET /v1/jobs lists them, /docs all calls")),
+            JobsError::NoStudy(id) => {
+                Self::not_found(format_args!("study {id}; GET /v1/studies lists them, /docs all calls"))
+            }
+            JobsError::NoSweep(id) => {
+                Self::not_found(format_args!("sweep {id}; GET /v1/sweeps lists them, /docs all calls"))
+            }
+            JobsError::NoCurve(id) => {
+                Self::not_found(format_args!("curve {id}; GET /v1/curves lists them, /docs all calls"))
+            }
             JobsError::Store(error) => error.into(),
             JobsError::Task(_) | JobsError::Write(_) => {
                 tracing::error!(%error, "a request failed");

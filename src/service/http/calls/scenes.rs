@@ -33,7 +33,7 @@ pub async fn list() -> Json<SceneList> {
 pub async fn get(Path(name): Path<String>) -> Result<impl IntoResponse, Problem> {
     let scene = scenes::find(&name).ok_or_else(|| {
         let nearest = suggestion_of_all(&name, scenes::ALL.iter().map(|scene| scene.name));
-        Problem::not_found(format_args!("scene of that name{nearest}"))
+        Problem::not_found(format_args!("scene of that name{nearest}; GET /v1/scenes lists them"))
     })?;
     Ok(([(header::CONTENT_TYPE, "application/json")], scene.request))
 }

@@ -3,6 +3,7 @@
 use crate::model::VariationSummary;
 use crate::model::request::response::Response;
 use crate::model::request::sweep::{Combine, SweepParameter};
+use crate::result::plan::Warning;
 use crate::service::http::view::submitted::Submitted;
 use crate::service::store::JobRecord;
 use crate::studies::sweeps::Row;
@@ -37,6 +38,9 @@ pub struct Variation {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     refine: Option<u64>,
+    /// What is valid in its runs and may be a mistake; absent where nothing is.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    warnings: Vec<Warning>,
 }
 
 /// A sweep as it is listed: what it varies is shortened.

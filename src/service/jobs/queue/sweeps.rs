@@ -2,6 +2,7 @@
 
 use crate::model::request::sweep::Variation;
 use crate::model::{InputError, InputErrors, RunMistakes, Sweep, VariationSummary};
+use crate::result::plan::Warning;
 use crate::service::jobs::configuration::limits::MOST_SWEEP_BYTES;
 use crate::service::jobs::queue::checks::{Check, CheckContext, Whole};
 use crate::service::jobs::queue::submission::{Prepared, not_text, queued, wrong_input};
@@ -135,7 +136,7 @@ impl Begun {
         context.go_on()?;
         let run = self.checked;
         match prepare_run(context, &self.sweep, &mut self.before, run) {
-            Ok(new) => {
+            Ok((new, warnings)) => {
                 self.bytes += new.request.len() + new.plan.len();
                 if self.bytes > MOST_SWEEP_BYTES {
                     return Err(refused(format!(
@@ -144,6 +145,7 @@ impl Begun {
                 }
                 self.runs.push(new);
                 self.mistakes.note(run, None);
+                self.mistakes.warn(&self.sweep, run, warnings);
             }
             Err(JobsError::Input(errors)) => self.mistakes.note(run, Some(errors)),
             Err(other) => return Err(other),
@@ -153,8 +155,8 @@ impl Begun {
     }
 
     fn end(self) -> Result<CheckedSweep, JobsError> {
-        let Self { request, sweep, runs, mistakes, .. } = self;
-        mistakes.result(&sweep).map_err(JobsError::Input)?;
+        let Self { request, mut sweep, runs, mistakes, .. } = self;
+        sweep.variation.warnings = mistakes.result(&sweep).map_err(JobsError::Input)?;
         let (summary, refine) = (summary(&sweep)?, sweep.variation.refine);
         // Written here, on a blocking thread, as it can be large.
         let plan = to_raw_value(&sweep.variation)?;
@@ -191,7 +193,7 @@ fn refinement(
     for run in chosen {
         context.go_on()?;
         match prepare_run(context, &sweep, &mut last, run) {
-            Ok(new) => runs.push(new),
+            Ok((new, _)) => runs.push(new),
             Err(JobsError::Input(errors)) => {
                 tracing::info!(sweep = %id, %errors, "the refinement ends");
                 runs.clear();
@@ -203,6 +205,7 @@ fn refinement(
     if runs.is_empty() {
         sweep.drop_values_after(usize::try_from(before).unwrap_or(usize::MAX));
     }
+    sweep.variation.warnings.clone_from(&found.variation.warnings);
     let plan = serde_json::to_string(&sweep.variation)?;
     Ok(SweepRefinement { sweep: id, before, plan, summary: summary(&sweep)?, runs })
 }
@@ -211,15 +214,22 @@ fn refused(detail: String) -> JobsError {
     JobsError::Input(InputErrors(vec![InputError::new("/sweep/replace", detail)]))
 }
 
-fn prepare_run(context: &CheckContext<'_>, sweep: &Sweep, before: &mut Before, run: u64) -> Result<NewRun, JobsError> {
+/// A checked run, and what may be a mistake in it.
+fn prepare_run(
+    context: &CheckContext<'_>,
+    sweep: &Sweep,
+    before: &mut Before,
+    run: u64,
+) -> Result<(NewRun, Vec<Warning>), JobsError> {
     let wrong = |errors| JobsError::Input(sweep.located(run, errors));
     let crate::model::runs::Run { text, request } = sweep.run(run).map_err(JobsError::Input)?;
     let max_increments = request.analysis.max_increments;
     context.limits.check(&request.model, max_increments).map_err(wrong)?;
-    let plan = serde_json::to_string(&context.solver.plan_after(before, &request).map_err(wrong)?)?;
+    let planned = context.solver.plan_after(before, &request).map_err(wrong)?;
+    let plan = serde_json::to_string(&planned)?;
     let values = serde_json::to_string(&sweep.variation.values(run))?;
     let responses = &sweep.variation.responses;
     ResponseFinder::new(responses, &request).map_err(JobsError::Input)?;
     let asked = (!responses.is_empty()).then(|| serde_json::to_string(responses)).transpose()?;
-    Ok(NewRun { name: request.model.name, request: text, plan, values, asked, max_increments })
+    Ok((NewRun { name: request.model.name, request: text, plan, values, asked, max_increments }, planned.warnings))
 }

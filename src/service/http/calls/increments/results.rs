@@ -121,13 +121,13 @@ fn vtk_files(mut path: StoredPath, branch: String) -> impl Stream<Item = io::Res
 /// The tables one after the other; each reads the path anew, so that memory holds one group of rows.
 fn parquet_files(mut path: StoredPath) -> impl Stream<Item = io::Result<Vec<u8>>> {
     try_stream! {
-        let dimension = path.of_request(|request| request.model.dimension).await?;
+        let (dimension, units) = path.of_request(|request| (request.model.dimension, request.model.units.clone())).await?;
         let mut archive = Archive::default();
         let made = archive.made();
         for table in PathTable::ALL {
             // Parquet compresses its columns itself.
             archive.begin(&format!("{}.parquet", table.name()), CompressionMethod::Stored)?;
-            let mut sheet = table.sheet(archive, dimension).map_err(io::Error::other)?;
+            let mut sheet = table.sheet(archive, dimension, units.as_ref()).map_err(io::Error::other)?;
             path.rewind();
             while let Some(page) = path.next_page().await? {
                 let push = move |sheet: &mut Sheet<Archive>, Stored { increment, measure }: Stored| {

@@ -196,7 +196,8 @@ export class RunForm {
       if (asked !== this.asked) return;
       if (isSweep) {
         fill(this.verdict, element("h3", {}, "Plan"), element("p", {}, `${plan.runs} paths, each a job of its own${
-          plan.refine ? `, and up to ${plan.refine} more where the response changes most` : ""}.`));
+          plan.refine ? `, and up to ${plan.refine} more where the response changes most` : ""}.`),
+        element("ul", { class: "plan" }, warningSentences(plan).map((words) => element("li", {}, element("b", {}, "Warning: "), words))));
         this.button.disabled = false;
         return;
       }

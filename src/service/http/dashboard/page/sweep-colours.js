@@ -8,8 +8,8 @@ import { parameterNames, runWords, valuesOf } from "./sweep-values.js";
 /** Viridis, without the end that the background is like. */
 const LIGHT = ["#440154", "#414487", "#2a788e", "#22a884", "#7ad151"];
 const DARK = ["#5a62b8", "#2f87a0", "#22a884", "#7ad151", "#fde725"];
-/** At most this many values have a tick each. */
-const TICKS = 12;
+/** At most this many values have a tick each, this part of the scale apart. */
+const [TICKS, APART] = [12, 0.09];
 
 const read = new Map();
 
@@ -68,6 +68,14 @@ export class SweepColours {
     return runWords(this.sweep, job.sweep.run);
   }
 
+  /** Values that have a tick: all of them that leave room for the text of one before. */
+  ticks() {
+    const least = APART * (this.values.at(-1) - this.values[0]);
+    const kept = [];
+    for (const value of this.values) if (kept.length === 0 || value - kept.at(-1) >= least) kept.push(value);
+    return kept;
+  }
+
   /** A trace without points that has the colour bar. */
   bar() {
     const [low, high] = [this.values[0], this.values.at(-1)];
@@ -79,7 +87,7 @@ export class SweepColours {
         colorbar: {
           title: { text: this.names[this.place], side: "top" }, orientation: "h", thickness: 10, y: 1.02, yanchor: "bottom",
           len: 0.7, x: 0, xanchor: "left", outlinewidth: 0,
-          ...(this.values.length <= TICKS ? { tickvals: this.values } : {}),
+          ...(this.values.length <= TICKS ? { tickvals: this.ticks() } : {}),
         },
       },
     };

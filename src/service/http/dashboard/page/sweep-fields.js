@@ -1,4 +1,5 @@
-// Fields for what a sweep varies: a place and its values for each parameter, how the values are combined, and the refinement.
+// Fields for what a sweep varies: a place and its values for each parameter, how the values are combined, what is told of each
+// path, and the refinement.
 // They show what the text of the request has, and report changes.
 
 import { button, choice, element, fill } from "./dom.js";
@@ -6,6 +7,8 @@ import { valueWords } from "./sweep-values.js";
 
 /** The most places that are proposed. */
 const PROPOSED = 60;
+/** Places of a path that have a name; any other text is a column and a number that it reaches. */
+const NAMED = ["first_limit", "largest_load", "first_slip", "first_contact_change", "end"];
 const COMBINED = [["grid", "each with each"], ["list", "the first of each, the second of each, and so on"]];
 
 /** Values of a text: JSON, separated by commas; what is not JSON is a text of its own. */
@@ -25,6 +28,23 @@ function valuesOf(text) {
 }
 
 const textOf = (values) => (Array.isArray(values) ? values.map(valueWords).join(", ") : "");
+
+/** The place of a response as the command line has it: a name, or `tip.x=2`. */
+const placeText = (at) => (typeof at === "string" ? at : at ? `${at.value ?? ""}=${at.reaches ?? ""}` : "");
+
+function placeOfText(text) {
+  const [, column, number] = /^(.*)=([^=]*)$/.exec(text) ?? [];
+  return column === undefined ? text : { value: column.trim(), reaches: number.trim() === "" ? null : Number(number) };
+}
+
+/** Columns of a path that a response may have. */
+function columnsOf({ model }) {
+  const axes = ["x", "y", "z"].slice(0, model?.dimension ?? 2);
+  const nodes = Object.keys(model?.nodes ?? {}).flatMap((name) => axes.map((axis) => `${name}.${axis}`));
+  const contacts = (Array.isArray(model?.contacts) ? model.contacts : []).flatMap(({ node, obstacle }) =>
+    (obstacle ? ["gap", "normal_reaction", "status"].map((name) => `${node}/${obstacle}.${name}`) : []));
+  return ["load_factor", "arc_length", "dissipated", ...nodes, ...contacts].slice(0, PROPOSED);
+}
 
 /** Places whose values are numbers, those that stand for every item first. */
 function proposals({ model }) {
@@ -54,6 +74,8 @@ export class SweepFields {
     this.value = {};
     this.rows = element("div", {});
     this.known = element("datalist", { id: "sweep-places" });
+    this.columns = element("datalist", { id: "sweep-columns" });
+    this.told = element("div", {});
     this.combine = choice({ id: "setting-combine", onchange: () => this.put("combine", this.combine.value, "grid") }, COMBINED, "grid");
     this.refine = element("input", {
       type: "number", id: "setting-refine", min: 0, step: 1, placeholder: "none",
@@ -62,7 +84,11 @@ export class SweepFields {
     const labelled = (words, input, more) => element("div", { class: "setting" }, element("label", { for: input.id }, words), input,
       element("small", {}, more));
     this.place = element("fieldset", { class: "settings", id: "sweep-fields" }, element("legend", {}, "What is varied"), this.known,
+      this.columns, element("datalist", { id: "sweep-named" }, NAMED.map((name) => element("option", { value: name }))),
       this.rows, button("Another parameter", () => this.add(), { id: "sweep-add" }),
+      element("p", {}, "What is told of each path (a name, a column of path.csv, and where: a name, or ",
+        element("code", {}, "tip.x=2"), ", where a column reaches a number):"),
+      this.told, button("Another response", () => this.addResponse(), { id: "sweep-add-response" }),
       labelled("combine", this.combine, "How the values of several parameters meet."),
       labelled("refine", this.refine, "Further runs at most, where the first response, or the limit load, changes most between two values "
         + "of the only parameter."));
@@ -79,9 +105,17 @@ export class SweepFields {
       const shown = [pointer, textOf(values)];
       this.inputs[row].forEach((input, place) => { if (input !== document.activeElement) input.value = shown[place]; });
     });
+    const responses = Object.entries(this.value.responses ?? {});
+    if (this.asked?.length !== responses.length) this.drawResponses(responses.length);
+    responses.forEach(([name, response], row) => {
+      const shown = [name, response?.value ?? "load_factor", placeText(response?.at)];
+      this.asked[row].forEach((input, place) => { if (input !== document.activeElement) input.value = shown[place]; });
+    });
     this.combine.value = this.value.combine ?? "grid";
     if (this.refine !== document.activeElement) this.refine.value = this.value.refine || "";
-    if (request) fill(this.known, proposals(request).map((place) => element("option", { value: place })));
+    if (!request) return;
+    fill(this.known, proposals(request).map((place) => element("option", { value: place })));
+    fill(this.columns, columnsOf(request).map((name) => element("option", { value: name })));
   }
 
   draw(count) {
@@ -97,6 +131,40 @@ export class SweepFields {
     ]);
     fill(this.rows, this.inputs.map(([pointer, values], row) => element("div", { class: "setting parameter" }, pointer, values,
       button("Remove", () => this.remove(row), { "aria-label": `remove parameter ${row + 1}` }))));
+  }
+
+  drawResponses(count) {
+    const field = (name, row, attributes) => element("input", {
+      type: "text", "aria-label": `${name} of response ${row + 1}`, "data-key": `${name} ${row}`, onchange: () => this.takeResponses(), ...attributes,
+    });
+    this.asked = Array.from({ length: count }, (_, row) => [
+      field("name", row, { placeholder: "tip at limit" }),
+      field("column", row, { list: "sweep-columns", placeholder: "load_factor" }),
+      field("place", row, { list: "sweep-named", placeholder: "first_limit" }),
+    ]);
+    fill(this.told, this.asked.map((inputs, row) => element("div", { class: "setting parameter" }, inputs,
+      button("Remove", () => this.removeResponse(row), { "aria-label": `remove response ${row + 1}` }))));
+  }
+
+  takeResponses() {
+    // Members other than these, such as the stage, stay.
+    const before = Object.values(this.value.responses ?? {});
+    const responses = Object.fromEntries(this.asked.map(([name, column, place], row) => [name.value.trim(), {
+      ...before[row], value: column.value.trim() || "load_factor", at: placeOfText(place.value.trim()),
+    }]));
+    this.put("responses", responses);
+  }
+
+  addResponse() {
+    const name = `response ${Object.keys(this.value.responses ?? {}).length + 1}`;
+    this.put("responses", { ...this.value.responses, [name]: { value: "load_factor", at: "first_limit" } });
+    this.asked.at(-1)[0].focus();
+  }
+
+  removeResponse(row) {
+    const rest = Object.entries(this.value.responses ?? {}).filter((_, place) => place !== row);
+    if (rest.length) this.put("responses", Object.fromEntries(rest));
+    else this.put("responses", null, null);
   }
 
   /** What the fields say becomes the value. */
