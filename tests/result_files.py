@@ -238,6 +238,9 @@ def check_parquet(open_table, request, rows):
     axes = AXES[:dimension]
     increments, nodes, elements, contacts = (
         open_table(name) for name in ("increments", "nodes", "elements", "contacts"))
+    about = {key.decode(): value.decode() for key, value in (nodes.schema.metadata or {}).items()}
+    labels = {f"units.{name}": label for name, label in request["model"].get("units", {}).items()}
+    Check.equal("units", {key: value for key, value in about.items() if key.startswith("units.")}, labels)
     for name in ("index", "stage", "load_factor", "arc_length", "step"):
         Check.equal(name, column(increments, name), [row[name] for row in rows])
     for name, key in (("point", "kind"), ("bifurcation", "bifurcation"), ("event", "event")):

@@ -2,10 +2,13 @@
 
 use crate::model::input::error::{InputError, InputErrors};
 use crate::model::input::limits::{MAX_NAME_BYTES, MAX_SWEEP_PLACES, MAX_SWEEP_RESPONSES, MAX_SWEEP_RUNS};
-use crate::model::request::JobRequest;
+use crate::model::request::column_units::unit_of;
+use crate::model::request::response::Response;
 use crate::model::request::sweep::{Combine, SweepParameter, Variation};
+use crate::model::request::{JobRequest, Units};
 use crate::model::template::{Template, escaped, item};
 use crate::model::{check, decode};
+use serde::Deserialize;
 use serde_json::Value;
 use std::ops::Range;
 
@@ -70,7 +73,12 @@ impl Sweep {
         }
         if mistakes.is_empty() {
             let (combine, responses, refine) = (form.combine, form.responses, form.refine);
-            let variation = Variation { parameters, combine, responses, refine, warnings: Vec::new() };
+            let units =
+                base.pointer("/model/units").and_then(|units| Units::deserialize(units).ok()).unwrap_or_default();
+            let unit_of =
+                |(name, response): (&String, &Response)| Some((name.clone(), unit_of(&response.value, &units)?));
+            let response_units = responses.iter().filter_map(unit_of).collect();
+            let variation = Variation { parameters, combine, responses, refine, response_units, warnings: Vec::new() };
             let template = Template::new(base, &places, &variation.values(0));
             Ok(Self { name, variation, runs, template })
         } else {

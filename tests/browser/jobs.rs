@@ -139,6 +139,20 @@ async fn a_text_of_the_readers_own_is_named_so_and_brought_back_where_another_ta
     browser.until("document.getElementById('verdict').textContent.includes('2 paths, each a job of its own, and up to 3 more')").await;
     let written = "JSON.stringify(JSON.parse(document.getElementById('request').value).sweep)";
     assert_eq!(browser.ask(written).await, "{\"replace\":{\"/model/contacts/*/friction\":[0.25,0.5]},\"refine\":3}");
+    // What is told of each path.
+    browser.press("#sweep-add-response").await;
+    browser.put("[aria-label='name of response 1']", "reaction").await;
+    browser.put("[aria-label='column of response 1']", "load_factor").await;
+    browser.put("[aria-label='place of response 1']", "load_factor=0.25").await;
+    let responses = "JSON.stringify(JSON.parse(document.getElementById('request').value).sweep.responses)";
+    let expected = "{\"reaction\":{\"value\":\"load_factor\",\"at\":{\"value\":\"load_factor\",\"reaches\":0.25}}}";
+    assert_eq!(browser.ask(responses).await, expected);
+    browser.press("[aria-label='remove response 1']").await;
+    assert_eq!(browser.ask(written).await, "{\"replace\":{\"/model/contacts/*/friction\":[0.25,0.5]},\"refine\":3}");
+    // A warning of the runs stands in the plan.
+    browser.put(values, "0.25, 30").await;
+    browser.until("document.getElementById('verdict').textContent.includes('unusually large')").await;
+    browser.put(values, "0.25, 0.5").await;
     browser.press("#sweep-add").await;
     browser.press("[aria-label='remove parameter 2']").await;
     browser.put("#kind", "").await;

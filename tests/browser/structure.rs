@@ -241,3 +241,31 @@ async fn beams_are_drawn_as_they_are_bent_with_the_forces_in_them() {
     }
     browser.close(served.url(), &[]).await;
 }
+
+/// A beam in space is drawn as it bends, and its support's force on it as an arrow; a malformed id is told.
+#[tokio::test]
+async fn a_beam_in_space_is_curved_and_its_support_pushes() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let beam = json!({
+        "kind": "beam", "nodes": ["root", "tip"], "axial_stiffness": 1e4, "bending_stiffness": [1, 1],
+        "torsional_stiffness": 1, "orientation": [0, 1, 0],
+    });
+    let request = json!({"model": {
+        "dimension": 3, "nodes": {"root": [0, 0, 0], "tip": [1, 0, 0]}, "elements": [beam],
+        "supports": {"root": ["x", "y", "z", "rx", "ry", "rz"]},
+        "stages": [{"name": "pull", "forces": {"tip": [0, 1, 1]}, "until": {"load_above": 2}}],
+    }});
+    let id = served.ended(&request).await;
+    browser.visit(&format!("{}/?jobs={id}", served.url())).await;
+    browser.until(&format!("{} !== undefined", trace("reaction of a support"))).await;
+    let points = format!(
+        "Math.max(...{STRUCTURE}.data.filter(({{name}}) => name?.startsWith('bar ')).map(({{x}}) => x.length))"
+    );
+    assert!(browser.ask(&points).await.as_f64().is_some_and(|points| points > 10.0), "the beam is bent");
+    browser.visit(&format!("{}/?jobs=abc", served.url())).await;
+    browser
+        .until("document.getElementById('notice').textContent.includes('“abc” where the id of a job is expected')")
+        .await;
+    browser.close(served.url(), &[]).await;
+}

@@ -28,6 +28,7 @@ pub mod random_curves;
 pub mod random_solids;
 #[cfg(feature = "server")]
 pub mod reader;
+pub mod round_arch;
 #[cfg(feature = "server")]
 pub mod server;
 #[cfg(feature = "server")]

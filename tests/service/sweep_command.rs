@@ -34,6 +34,16 @@ fn scene() -> String {
 }
 
 #[test]
+fn what_may_be_a_mistake_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = written(&folder, "model.json", &scene());
+    let replace = format!("{FRICTION}=0.3,30");
+    let output = sweep(&[file.to_str().expect("text"), "--replace", &replace]);
+    let told = String::from_utf8(output.stderr).expect("text");
+    assert!(told.starts_with("warning: /sweep/replace/~1model~1contacts~10~1friction/1: "), "{told}");
+}
+
+#[test]
 fn values_stand_on_the_command_line() {
     let replace = |pointer: &str, values: &str| format!("{pointer}={values}");
     let friction = replace(FRICTION, "0.3,0.5");

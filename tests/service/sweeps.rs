@@ -43,6 +43,25 @@ async fn text(server: &TestServer, place: &str) -> String {
     answer.text().await.expect("text")
 }
 
+/// A friction that is rather an angle is told at its place among the values, with the plan and with the sweep.
+#[tokio::test(flavor = "multi_thread")]
+async fn what_may_be_a_mistake_in_the_runs_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let server = TestServer::start(&folder.path().join("jobs.db"), PathSolver).await;
+    let told = |found: &Value| found["warnings"].as_array().map_or(0, Vec::len);
+    for (values, warnings) in [(json!([0.1, 0.3]), 0), (json!([0.1, 30]), 1)] {
+        let request = sweep(json!({ FRICTION: values }));
+        let plan: Value = server.post("/v1/sweeps?validate=true", &request).await.json().await.expect("a plan");
+        let place = submitted(&server, &request).await;
+        let whole = ended(&server, &place).await;
+        assert_eq!((told(&plan), told(&whole)), (warnings, warnings), "{plan}");
+        if warnings == 1 {
+            assert_eq!(plan["warnings"], whole["warnings"]);
+            assert_eq!(plan["warnings"][0]["pointer"], "/sweep/replace/~1model~1contacts~10~1friction/1");
+        }
+    }
+}
+
 /// As the command line does it, over a restart and by two processes at a time.
 #[tokio::test(flavor = "multi_thread")]
 async fn a_sweep_is_refined_where_its_response_jumps() {

@@ -265,6 +265,21 @@ fn many_elements_have_no_forces_unasked() {
     assert!(!Table::of(&request).header().contains("elements/"));
 }
 
+/// Two contacts of one node with one obstacle have columns of their own.
+#[test]
+fn contacts_of_the_same_two_are_told_apart() {
+    let mut request = scene("one-bar-truss");
+    let again = request.model.contacts[0].clone();
+    let label = format!("{}/{}", again.node, again.counterpart());
+    request.model.contacts.push(again);
+    let names = Table::of(&request).names();
+    let unlike: std::collections::HashSet<&String> = names.iter().collect();
+    assert_eq!(unlike.len(), names.len());
+    for wanted in [format!("{label}.gap"), format!("{label}#2.gap")] {
+        assert!(names.contains(&wanted), "{wanted}: {names:?}");
+    }
+}
+
 #[test]
 fn a_table_has_the_forces_of_the_increments() {
     let request = scene("one-bar-truss");

@@ -2,6 +2,7 @@
 
 use crate::common::paths::{close, scene_file};
 use crate::common::random::random_scene;
+use crate::common::round_arch::round_arch;
 use arcslip::continuation::path::iterator::Path;
 use arcslip::continuation::scene::Scene;
 use arcslip::model::request::{Events, StageControl};
@@ -10,7 +11,6 @@ use arcslip::resources::cancel::CancelFlag;
 use arcslip::result::increment::{Increment, PointKind};
 use arcslip::studies::critical_curves::{self, CurveFound, CurveRow, CurveSummary};
 use serde_json::{Value, json};
-use std::f64::consts::FRAC_PI_2;
 use std::ops::ControlFlow;
 
 fn curve_of(request: &JobRequest, settings: &Value) -> Result<ParameterCurve, InputErrors> {
@@ -86,38 +86,11 @@ fn the_limit_load_of_the_arch_type_truss_grows_with_friction() {
     assert!(off <= 1e-8, "{off:e}");
 }
 
-/// Half an arch on a rough floor, of beams with three nodes.
-fn arch(friction: f64) -> JobRequest {
-    let count = 32;
-    let mut nodes = serde_json::Map::new();
-    for k in 0..=count {
-        let angle = FRAC_PI_2 * f64::from(k) / f64::from(count);
-        nodes.insert(format!("n{k}"), json!([angle.sin(), if k == count { 0.0 } else { angle.cos() }]));
-    }
-    let element = |k: i32| {
-        let ends = [0, 1, 2].map(|one| format!("n{}", 2 * k + one));
-        json!({"kind": "beam", "nodes": ends, "axial_stiffness": 1e6, "bending_stiffness": 1.0})
-    };
-    let elements: Vec<Value> = (0..count / 2).map(element).collect();
-    let request = json!({
-        "model": {
-            "dimension": 2, "nodes": nodes, "elements": elements, "supports": {"n0": ["x", "rz"]},
-            "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}},
-            "contacts": [{"node": format!("n{count}"), "obstacle": "floor", "friction": friction}],
-            "stages": [{
-                "name": "press", "forces": {"n0": [0, -0.5]},
-                "until": {"displacement": {"node": "n0", "component": "y", "below": -1}},
-            }],
-        },
-    });
-    serde_json::from_value(request).expect("a request")
-}
-
 #[test]
 fn the_limit_point_of_the_arch_becomes_smooth_at_its_critical_friction() {
     for (start, step) in [(0.8, 0.05), (1.2, 0.037)] {
         let settings = json!({"parameter": "/model/contacts/0/friction", "range": [0.65, 1.3], "step": step});
-        let curve = curve_of(&arch(start), &settings).expect("a curve");
+        let curve = curve_of(&round_arch(start), &settings).expect("a curve");
         let found = followed(&curve).expect("a curve");
         assert_eq!(ended(&found).paths, 4);
         let changes: Vec<&CurveRow> = found.rows.iter().filter(|row| row.codimension_two).collect();
@@ -137,7 +110,7 @@ fn the_limit_point_of_the_arch_becomes_smooth_at_its_critical_friction() {
 /// The path is traced anew past the change however many increments it takes to its limit point.
 #[test]
 fn a_change_is_passed_by_a_path_of_many_short_steps() {
-    let mut request = arch(1.05);
+    let mut request = round_arch(1.05);
     (request.analysis.arc_length.initial, request.analysis.arc_length.max) = (0.01, 0.01);
     request.analysis.max_increments = 5_000;
     let settings = json!({"parameter": "/model/contacts/0/friction", "range": [1, 1.1], "step": 0.05});
@@ -171,7 +144,7 @@ fn a_cancelled_curve_claims_no_end() {
 #[test]
 fn the_limit_point_of_the_arch_is_lost_where_its_foot_slides_all_the_way() {
     let settings = json!({"parameter": "/model/contacts/0/friction", "range": [0.5, 0.8]});
-    let found = followed(&curve_of(&arch(0.8), &settings).expect("a curve")).expect("a curve");
+    let found = followed(&curve_of(&round_arch(0.8), &settings).expect("a curve")).expect("a curve");
     let changes: Vec<&CurveRow> = found.rows.iter().filter(|row| row.codimension_two).collect();
     let slides = changes.iter().find(|row| row.event.as_ref().is_some_and(|event| event.contains("begins to slip")));
     close(slides.expect("a change").value, std::f64::consts::FRAC_2_PI, 1e-5, "the thrust ratio");

@@ -122,6 +122,12 @@ class Program(unittest.TestCase):
         self.assertIn("did you mean `block`", str(refused.exception))
         self.assertIn("here: -1", str(refused.exception))
 
+    def test_what_may_be_a_mistake_is_told(self):
+        with self.assertWarnsRegex(arcslip.ModelWarning, "/model/contacts/0/friction: the coefficient 30"):
+            arcslip.solve(block(friction=30), max_increments=1)
+        with self.assertRaisesRegex(TypeError, "'mu'; did you mean 'friction'"):
+            block().contact("block", mu=0.2)
+
     def test_a_mechanism_is_refused_with_its_reason(self):
         model = arcslip.Model(2)
         model.nodes({"a": (0, 0), "b": (1, 0)})
@@ -315,6 +321,10 @@ class Service(unittest.TestCase):
         self.assertEqual([row["load_factor"] for row in other.rows()], [row["load_factor"] for row in rows])
         with self.assertRaises(arcslip.InvalidModel):
             job.limit_curve("/model/contacts/*/friction", [1, 0])
+        turning = self.client.curve(self.client.scene("curving-slip"), "/model/contacts/0/friction", [0.1, 0.9])
+        turning.wait()
+        with self.assertRaisesRegex(arcslip.JobFailed, "has no point"):
+            turning.rows()
 
     @ALL
     def test_tables_of_sweeps(self):
@@ -359,6 +369,10 @@ class Service(unittest.TestCase):
     def test_a_plan_says_what_may_be_a_mistake(self):
         plan = self.client.check(block(friction=30))
         self.assertEqual(plan["warnings"][0]["pointer"], "/model/contacts/0/friction")
+        with self.assertWarns(arcslip.ModelWarning):
+            self.client.submit(block(friction=30), max_increments=1)
+        with self.assertWarnsRegex(arcslip.ModelWarning, "friction/1: .*unusually large"):
+            self.client.sweep(block(), {"/model/contacts/0/friction": [0.3, 30]}, max_increments=1)
 
 
 if __name__ == "__main__":

@@ -169,7 +169,10 @@ impl PvdFile {
         let folder = place.with_extension("");
         // A name without extension is the folder's own.
         let folder = if folder == place { place.with_extension("pieces") } else { folder };
-        std::fs::create_dir_all(&folder)?;
+        std::fs::create_dir_all(&folder).map_err(|error| {
+            let what = format!("the folder {} of its pieces cannot be made: {error}", folder.display());
+            io::Error::new(error.kind(), what)
+        })?;
         remove_pieces(&folder)?;
         let folder_name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let mut list = File::create(place)?;

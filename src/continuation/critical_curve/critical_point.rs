@@ -102,7 +102,11 @@ pub(super) fn kind_name(kind: PointKind) -> &'static str {
 
 /// What is told where the path takes another direction from here on, or that of the curve again.
 pub(super) fn describe_direction(history: &ContactHistory, point: usize, is_own: bool) -> String {
-    let which = if is_own { "along the direction of the curve again" } else { "along another direction, which the rule prefers from here on" };
+    let which = if is_own {
+        "along the direction of the curve again"
+    } else {
+        "along another direction, which the rule prefers from here on"
+    };
     format!("the path leaves {} {which}", place_name(history, point))
 }
 

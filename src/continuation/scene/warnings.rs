@@ -32,7 +32,17 @@ fn large_friction(model: &Model) -> Vec<Warning> {
             contact.friction
         ),
     };
-    large.take(MOST_LISTED).map(warning).collect()
+    cut(large.map(warning).collect())
+}
+
+/// The first warnings of a kind; the last of them says how many there are besides.
+fn cut(mut warnings: Vec<Warning>) -> Vec<Warning> {
+    let more = warnings.len().saturating_sub(MOST_LISTED);
+    warnings.truncate(MOST_LISTED);
+    if let Some(last) = warnings.last_mut().filter(|_| more > 0) {
+        last.detail.push_str(&format!("; the same holds at {more} more places"));
+    }
+    warnings
 }
 
 /// Forces that an increment does not have, though nobody has said so.
@@ -77,12 +87,12 @@ fn doubled_bars(model: &Model) -> Vec<Warning> {
         let (Element::Bar { .. }, [one, other]) = (element, element.nodes()) else { continue };
         let ends = if one <= other { [one.as_str(), other.as_str()] } else { [other.as_str(), one.as_str()] };
         let first = *first_between.entry(ends).or_insert(place);
-        if first != place && warnings.len() < MOST_LISTED {
+        if first != place {
             let detail = format!("bar {first} joins the same nodes; both carry force");
             warnings.push(Warning { pointer: format!("/model/elements/{place}"), detail });
         }
     }
-    warnings
+    cut(warnings)
 }
 
 #[cfg(test)]
@@ -100,6 +110,16 @@ mod tests {
             "supports": {"n0": ["x", "y"]}, "stages": [{"name": "pull", "forces": {"n1": [1, 0]}, "until": {"load_above": 1}}],
         });
         serde_json::from_value(json!({"model": model, "analysis": {"record": record}})).expect("a request")
+    }
+
+    #[test]
+    fn warnings_that_are_not_listed_are_counted() {
+        let mut request = row_of(1, &json!({}));
+        let bar = request.model.elements[0].clone();
+        request.model.elements.extend((0..40).map(|_| bar.clone()));
+        let told = warnings(&request);
+        assert_eq!(told.len(), 5);
+        assert!(told[4].detail.ends_with("; the same holds at 35 more places"), "{}", told[4].detail);
     }
 
     #[test]

@@ -91,7 +91,8 @@ fn model(model: &Model, at: &DocumentPlace, mistakes: &mut Mistakes) -> usize {
         for (member, label) in [("length", &units.length), ("force", &units.force)] {
             if let Some(label) = label {
                 if label.trim().is_empty() {
-                    mistakes.add(&at.member(member), || "the label is empty; leave it out, or name the unit, such as `mm`");
+                    mistakes
+                        .add(&at.member(member), || "the label is empty; leave it out, or name the unit, such as `mm`");
                 }
                 printable(label, &at.member(member), mistakes);
             }

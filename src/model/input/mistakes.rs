@@ -62,13 +62,13 @@ const MOST_REPEATS: usize = 5;
 #[derive(Debug, Default)]
 pub(crate) struct Mistakes {
     listed: Vec<InputError>,
-    kinds: HashMap<Kind, Repeats>,
+    kinds: HashMap<MistakeKind, Repeats>,
     unlisted: usize,
 }
 
 /// What mistakes share that repeat one another: what is wrong, but for names and numbers, how deep in the document, and at
 /// which member.
-type Kind = (String, usize, String);
+type MistakeKind = (String, usize, String);
 
 #[derive(Debug, Default)]
 struct Repeats {
@@ -125,7 +125,7 @@ impl Mistakes {
     }
 }
 
-fn kind_of(error: &InputError) -> Kind {
+fn kind_of(error: &InputError) -> MistakeKind {
     let last = error.pointer.rsplit('/').next().unwrap_or_default();
     (without_names(&error.detail), error.pointer.matches('/').count(), without_names(last))
 }

@@ -7,6 +7,7 @@
 //! express stand with the fields, for the interface's description; [`check`](crate::model::check) holds to them and to the others.
 
 mod analysis;
+pub(crate) mod column_units;
 pub mod curve;
 mod jump;
 mod record;

@@ -77,12 +77,20 @@ pub struct Variation {
     /// Further runs at most, where the first response changes most.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub refine: u64,
+    /// The labels of the units of responses that have one, where the model names its units; by the names of the responses.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub response_units: IndexMap<String, String>,
     /// What is valid in its runs and may be a mistake.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<Warning>,
 }
 
 impl Variation {
+    /// The name of a response with the label of its unit, where it has one.
+    pub fn headed(&self, response: &str) -> String {
+        self.response_units.get(response).map_or_else(|| response.to_owned(), |unit| format!("{response} [{unit}]"))
+    }
+
     /// Which of its values each parameter has in a run.
     pub(crate) fn choices(&self, run: u64) -> Vec<usize> {
         let mut left = usize::try_from(run).unwrap_or(usize::MAX);

@@ -100,6 +100,7 @@ mod tests {
             combine: Combine::List,
             responses: Default::default(),
             refine: 0,
+            response_units: Default::default(),
             warnings: Vec::new(),
         }
     }

@@ -135,7 +135,7 @@ fn lines(found: &Found) -> Vec<Line<'_>> {
 pub fn svg(found: &Found) -> Result<String, PlotError> {
     let numbers = || found.rows.iter().filter_map(|row| up(found, row));
     let Some(first) = found.variation.parameters.first().filter(|_| numbers().next().is_some()) else {
-        return Err(PlotError::NothingFound { sought: upwards(found).to_owned() });
+        return Err(PlotError::NothingFound { sought: upwards(found) });
     };
     let (across, load) = (Across::of(&first.values), Axis::showing(numbers(), TICKS));
     let lines = lines(found);
@@ -147,8 +147,9 @@ pub fn svg(found: &Found) -> Result<String, PlotError> {
 }
 
 /// The name of what is drawn upwards.
-fn upwards(found: &Found) -> &str {
-    found.variation.responses.keys().next().map_or("first limit load factor", String::as_str)
+fn upwards(found: &Found) -> String {
+    let first = found.variation.responses.keys().next();
+    first.map_or_else(|| "first limit load factor".to_owned(), |name| found.variation.headed(name))
 }
 
 /// What is drawn upwards of a run, if it has that.
@@ -164,7 +165,7 @@ fn draw_chart(sheet: &Sheet<'_>, found: &Found, lines: &[Line<'_>], (across, loa
     let first = found.variation.parameters.first().map(|parameter| place(&parameter.pointer)).unwrap_or_default();
     let sides = [
         Side { name: across.named(&first), range: across.range(), tick: &|at| across.tick(at), ticks: TICKS },
-        Side { name: load.named(upwards(found)), range: load.range.clone(), tick: &|at| load.tick(at), ticks: TICKS },
+        Side { name: load.named(&upwards(found)), range: load.range.clone(), tick: &|at| load.tick(at), ticks: TICKS },
     ];
     let chart = chart::chart(&part, CHART, Some(found.name.as_deref().unwrap_or("sweep")), sides)?;
     for (number, line) in lines.iter().enumerate() {

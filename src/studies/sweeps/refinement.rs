@@ -103,7 +103,14 @@ mod tests {
     #[test]
     fn the_jump_is_divided_first_and_what_does_not_change_never() {
         let parameters = vec![SweepParameter { pointer: "/model/x".to_owned(), values: Vec::new() }];
-        let variation = Variation { parameters, combine: Combine::Grid, responses: Default::default(), refine: 9, warnings: Vec::new() };
+        let variation = Variation {
+            parameters,
+            combine: Combine::Grid,
+            responses: Default::default(),
+            refine: 9,
+            response_units: Default::default(),
+            warnings: Vec::new(),
+        };
         let rows = [row(0, 4.0, Some(5.0)), row(1, 0.0, Some(1.0)), row(2, 1.0, Some(1.0)), row(3, 2.0, Some(1.5))];
         assert_eq!(further_values(&variation, &rows, 9), [json!(3.0)]);
         let lost = [row(0, 0.0, Some(1.0)), row(1, 1.0, Some(9.0)), row(2, 1.5, None), row(3, 2.0, None)];

@@ -54,7 +54,7 @@ impl Found {
         let mut header = vec!["run".to_owned()];
         header.extend(self.variation.parameters.iter().map(|one| InputError::new(one.pointer.as_str(), "").place()));
         header.extend(["limit load", "kind", "at increment"].map(str::to_owned));
-        header.extend(self.variation.responses.keys().cloned());
+        header.extend(self.variation.responses.keys().map(|name| self.variation.headed(name)));
         header.push("end".to_owned());
         let mut cells = vec![header];
         for row in &self.rows {

@@ -403,6 +403,7 @@ class Sweep(Resource):
             told = row.get("responses") or {}
             table.append({**own, **values, **told, **{f"limit.{name}": limit.get(name) for name in limits}})
         frame = pandas.DataFrame(table)
+        frame.attrs["units"] = self.record.get("response_units") or {}
         numbers = ["limit.load_factor", "limit.arc_length", "limit.increment"]
         return frame.astype({name: float for name in numbers if name in frame})
 
@@ -426,8 +427,12 @@ class Curve(Resource):
     folder = "curves"
 
     def rows(self) -> List[Dict[str, Any]]:
-        """The points found so far, in order along the curve: `value`, `load_factor`, `kind`, `displacements`, `event` and so on."""
-        return sorted(self._pages_of_rows(), key=lambda row: row["place"])
+        """The points found so far, in order along the curve: `value`, `load_factor`, `kind`, `displacements`, `event` and so on.
+        Raises `JobFailed` where there is no limit point, or it cannot be followed."""
+        found = sorted(self._pages_of_rows(), key=lambda row: row["place"])
+        if not found and self.status not in UNDER_WAY and self.record.get("error"):
+            raise JobFailed(f"curve {self.id} has no point: {self.record['error']}")
+        return found
 
     def to_frame(self) -> Any:
         """The points as a table of pandas: `value`, `load_factor`, `kind`, `codimension_two`, `event`, and the displacements in

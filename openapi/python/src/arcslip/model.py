@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import copy
+import difflib
 import json
 import numbers
 import pathlib
@@ -250,6 +251,11 @@ class Model:
     ) -> int:
         """Adds a contact of a node, of the nodes of a set (`"@name"`), or of a surface, with an obstacle or `against` the
         surface of another body (`discretisation`: "mortar" or "node_to_surface"); returns its place among the contacts."""
+        for name in more:
+            near = {"mu": "friction", "coefficient": "friction"}.get(name) or next(
+                iter(difflib.get_close_matches(name, ("node", "obstacle", "friction", "surface", "against", "discretisation"), 1)), None
+            )
+            raise TypeError(f"a contact has no {name!r}" + (f"; did you mean {near!r}?" if near else ""))
         if against is None and node is not None and surface is not None:
             raise ValueError("a contact has either a node or a surface")
         if bool(obstacle) == (against is not None):
@@ -265,8 +271,7 @@ class Model:
                 contact["discretisation"] = discretisation
         else:
             contact["obstacle"] = obstacle
-        # The program tells what it does not know: `mu` is `friction`.
-        contact.update(plain({"friction": friction, **more}))
+        contact["friction"] = plain(friction)
         self._contacts.append(contact)
         return len(self._contacts) - 1
 

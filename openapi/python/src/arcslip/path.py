@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import json
+import pathlib
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union, overload
 
 from arcslip.model import SOLIDS, Model, as_request
@@ -159,6 +160,12 @@ class Path:
 
     def save(self, file: Any) -> None:
         """Writes the increments, one JSON object a line, as `arcslip solve --out path.ndjson` does."""
+        extension = pathlib.Path(file).suffix.lower()
+        if extension not in ("", ".ndjson", ".jsonl"):
+            raise ValueError(
+                f"the increments are written as lines of JSON, such as path.ndjson, and not as {extension!r}; "
+                "`to_frame()` has methods for tables, and `arcslip solve --out` writes .csv, .pvd and .parquet"
+            )
         with open(file, "w", encoding="utf-8") as lines:
             lines.writelines(json.dumps(increment, separators=(",", ":")) + "\n" for increment in self.increments)
 

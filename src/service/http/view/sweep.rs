@@ -38,6 +38,10 @@ pub struct Variation {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     refine: Option<u64>,
+    /// The labels of the units of responses that have one, where the model names its units; by the names of the responses.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<IndexMap<String, String>>, nullable = false)]
+    response_units: Option<Box<RawValue>>,
     /// What is valid in its runs and may be a mistake; absent where nothing is.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     warnings: Vec<Warning>,

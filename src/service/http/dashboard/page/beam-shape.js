@@ -1,4 +1,4 @@
-// The shape of a beam in the plane between its nodes: cubic pieces, whose directions at the nodes are those of the unstressed
+// The shape of a beam between its nodes: cubic pieces, whose directions at the nodes are those of the unstressed
 // beam, turned by the rotations there. At a hinge the shape has no curvature.
 
 /** Points of a piece that is bent, and the angle (radians) below which it is drawn straight. */
@@ -43,7 +43,52 @@ function piece(from, to, ends) {
   });
 }
 
-/** The points of a beam from its first to its last node; `now`: its nodes' positions; `rotations`: theirs, in radians. */
+const minus = (a, b) => a.map((value, axis) => value - b[axis]);
+const scaled = (a, factor) => a.map((value) => factor * value);
+const product = (a, b) => a.reduce((sum, value, axis) => sum + value * b[axis], 0);
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const unit = (a) => scaled(a, 1 / (Math.hypot(...a) || 1));
+
+/** A vector turned by a rotation vector (radians), by Rodrigues' formula. */
+function turnedBy(vector, rotation) {
+  const angle = Math.hypot(...rotation);
+  if (angle === 0) return vector;
+  const axis = scaled(rotation, 1 / angle);
+  const [across, along] = [cross(axis, vector), product(axis, vector)];
+  return vector.map((value, place) =>
+    Math.cos(angle) * value + Math.sin(angle) * across[place] + (1 - Math.cos(angle)) * along * axis[place]);
+}
+
+/** Directions of the unstressed beam in space at its nodes: of the parabola through three of them, or of a straight line. */
+function directionsInSpace([first, middle, last]) {
+  if (last === undefined) return [unit(minus(middle, first)), unit(minus(middle, first))];
+  const by = (a, b, c) => unit(first.map((value, axis) => a * value + b * middle[axis] + c * last[axis]));
+  return [by(-3, 4, -1), by(-1, 0, 1), by(1, -4, 3)];
+}
+
+/** The points of a piece in space with these directions at its ends. */
+function pieceInSpace(from, to, ends) {
+  const chord = minus(to, from);
+  const [length, along] = [Math.hypot(...chord), unit(chord)];
+  const angles = ends.map((end) => Math.acos(Math.max(-1, Math.min(1, product(end, along)))));
+  if (Math.max(...angles) < STRAIGHT) return [from, to];
+  const reach = length / Math.cos(Math.min(LARGEST, (angles[0] + angles[1]) / 2) / 2) ** 2;
+  return Array.from({ length: POINTS + 1 }, (_, place) => {
+    const t = place / POINTS;
+    const [u, v] = [t * t * (3 - 2 * t), t * (1 - t) * reach];
+    return from.map((value, axis) => value + u * chord[axis] + v * ((1 - t) * ends[0][axis] - t * ends[1][axis]));
+  });
+}
+
+/** As `beamShape`, in space; `rotations`: rotation vectors. */
+export function spaceBeamShape(model, item, now, rotations) {
+  const reference = directionsInSpace(item.nodes.map((name) => model.nodes[name]));
+  const at = reference.map((direction, place) => turnedBy(direction, rotations[place]));
+  return now.slice(1).reduce((points, to, place) =>
+    [...points, ...pieceInSpace(now[place], to, [at[place], at[place + 1]]).slice(1)], [now[0]]);
+}
+
+/** The points of a beam in the plane from its first to its last node; `now`: its nodes' positions; `rotations`: theirs, in radians. */
 export function beamShape(model, item, now, rotations) {
   const reference = item.nodes.map((name) => model.nodes[name]);
   const isReleased = (name) => Boolean(item.releases?.[name]?.includes("rz"));

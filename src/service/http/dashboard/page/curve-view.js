@@ -21,10 +21,15 @@ export class CurveView extends RowsView {
     return `${this.rows.length} ${this.rows.length === 1 ? "point" : "points"}.`;
   }
 
+  statusWords() {
+    // It has no path of its own that could end.
+    return this.record.status === "stopped" ? "has ended" : super.statusWords();
+  }
+
   remark() {
     const { error, report } = this.record;
     const ends = report?.complete ? ` From the start towards smaller values: ${report.ends_below}. Towards larger values: ${report.ends_above}.` : "";
-    return ` ${error ?? ""}${ends}`;
+    return ` ${error ? `The reason: ${error}` : ""}${ends}`;
   }
 
   async drawFindings() {

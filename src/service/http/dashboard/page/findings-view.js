@@ -108,7 +108,7 @@ export class FindingsView {
     this.told.shown(`${kind[0].toUpperCase()}${kind.slice(1)} ${nameOf(record)}`);
     fill(this.summary, element("div", { class: "bar" }, element("h2", {}, nameOf(record)),
       element("span", { class: `status ${record.status}`, id: `${kind}-status` }, record.status)),
-    element("p", {}, `${this.progressWords()} The ${kind} ${statusWords(record.status)}.${this.remark()}`));
+    element("p", {}, `${this.progressWords()} The ${kind} ${this.statusWords()}.${this.remark()}`));
     const key = `${record.id} ${record.status} ${hasFindings}`;
     if (this.actions.dataset.of !== key) {
       this.actions.dataset.of = key;
@@ -116,6 +116,10 @@ export class FindingsView {
     }
     this.panel.hidden = !hasFindings;
     if (hasFindings) await this.drawFindings();
+  }
+
+  statusWords() {
+    return statusWords(this.record.status);
   }
 
   /** The text after the status. */

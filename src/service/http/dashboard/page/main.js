@@ -52,6 +52,14 @@ const runForm = new RunForm(byId("run"), {
 });
 callsList(byId("calls"));
 
+/** Says of an address that names what cannot be the id of anything. */
+function unreadable() {
+  const now = state();
+  const given = new URLSearchParams(location.search);
+  const wrong = ["jobs", "study", "sweep", "curve"].find((name) => given.get(name) && !(name === "jobs" ? now.jobs.length : now[name]));
+  return wrong ? `The address has “${given.get(wrong)}” where the id of a ${wrong.replace("jobs", "job")} is expected. Choose one from the list.` : null;
+}
+
 function view(before) {
   const now = state();
   const isOther = !before || !isSameView(before, now);
@@ -59,8 +67,10 @@ function view(before) {
   if (!before || before.run !== now.run || before.scene !== now.scene || before.as !== now.as
     || before.again !== now.again) runForm.show();
   if (isOther) {
+    // What is shown now begins at the top.
+    if (before) scrollTo({ top: 0 });
     titled(now.run ? "New run" : "");
-    say(now.run || now.jobs.length ? "" : now.study || now.sweep || now.curve ? "Loading …" : "Choose a job, or start one with New run.");
+    say(now.run || now.jobs.length ? "" : unreadable() ?? (now.study || now.sweep || now.curve ? "Loading …" : "Choose a job, or start one with New run."));
     studyView.show(now.run ? null : now.study);
     sweepView.show(now.run ? null : now.sweep);
     curveView.show(now.run ? null : now.curve);

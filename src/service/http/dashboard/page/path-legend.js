@@ -100,12 +100,17 @@ export function namedWords(path, point) {
   return `${pointWords(point)} at load ${short(load)}${point.event ? `: ${point.event}` : ""}`;
 }
 
-/** `whose`: the name of the path where others are drawn, too; `choose(index)` is told of a point that is chosen. */
-export function namedPoints(place, path, whose, choose) {
-  const found = named(path);
-  fill(place, whose && found.length > 0 ? element("li", { class: "quiet" }, `Points of ${whose}:`) : null, found.slice(0, LISTED).map((point) => element("li", {},
-    element("button", {
-      type: "button", class: "plain", "data-key": `point ${point.index}`, onclick: () => choose(point.index),
-    }, element("span", { class: "letter" }, point.name || SIGNS.bifurcation), ` ${namedWords(path, point)}`))),
-  found.length > LISTED ? element("li", {}, `and ${found.length - LISTED} more`) : null);
+/** The points of paths `{path, whose, choose}`: `whose` is the name of the path where others are drawn, too; `choose(index)` is
+ *  told of a point that is chosen. */
+export function namedPoints(place, paths) {
+  fill(place, paths.flatMap(({ path, whose, choose }) => {
+    const found = named(path);
+    return [
+      whose && found.length > 0 ? element("li", { class: "quiet" }, `Points of ${whose}:`) : null,
+      ...found.slice(0, LISTED).map((point) => element("li", {}, element("button", {
+        type: "button", class: "plain", "data-key": `point ${path.id} ${point.index}`, onclick: () => choose(point.index),
+      }, element("span", { class: "letter" }, point.name || SIGNS.bifurcation), ` ${namedWords(path, point)}`))),
+      found.length > LISTED ? element("li", {}, `and ${found.length - LISTED} more`) : null,
+    ];
+  }));
 }

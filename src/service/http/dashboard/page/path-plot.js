@@ -82,8 +82,13 @@ export class PathPlot {
     this.controls(exact);
     await Plotly.react(this.place, traces, this.layout(), CONFIGURATION);
     this.listen();
-    const whose = paths.length > 1 ? curveNames(this.curves, this.runs)[0] : null;
-    namedPoints(this.list, paths[0], whose, (index) => this.told.chosen(paths[0].id, index));
+    const names = curveNames(this.curves, this.runs);
+    // Of the paths whose points have letters, or of the first one.
+    const listed = this.curves.length <= LETTERED ? paths : paths.slice(0, 1);
+    namedPoints(this.list, listed.map((path) => {
+      const whose = paths.length > 1 ? names[this.curves.findIndex((curve) => curve.path === path)] : null;
+      return { path, whose, choose: (index) => this.told.chosen(path.id, index) };
+    }));
   }
 
   /** The curves: each ordinate of each path. */

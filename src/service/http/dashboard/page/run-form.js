@@ -169,6 +169,8 @@ export class RunForm {
     this.text.number([]);
     this.preview.later(this.text.value);
     this.scenes.draw(this.known ?? [], this.wanted);
+    // A text that has been changed is not what the scene shows.
+    this.shows.hidden = this.scenes.isChanged;
     let request = null;
     try {
       request = JSON.parse(this.text.value);

@@ -36,12 +36,16 @@ export function structureDrawing(model, increment, view) {
   const units = unitsOf(model);
   const loads = loadsOf(model, increment, view.reached);
   const forces = elementForces(model, increment);
-  keepLargest(largest, increment, loads, forces);
+  keepLargest(largest, increment, loads, forces, model);
   const kind = model.dimension === 2 ? view.diagram : null;
   const diagrams = kind ? new ForceDiagrams(kind, traces, {
     most: largestValue(largest, kind, forces), size: extent.size, units,
   }) : null;
-  const rotation = (name) => (model.dimension === 2 ? exaggeration * (increment.displacements[name]?.[2] ?? 0) : 0);
+  const rotation = (name) => {
+    const turns = increment.displacements[name] ?? [];
+    if (model.dimension === 2) return exaggeration * (turns[2] ?? 0);
+    return [3, 4, 5].map((place) => exaggeration * (turns[place] ?? 0));
+  };
   // Where nodes are drawn further on, so are the obstacles that push them.
   const isAtRest = increment.index === null;
   const moved = new Map(isAtRest ? [] : [...loads.motions].map(([name, motion]) => [name, times(motion, exaggeration)]));
@@ -53,7 +57,7 @@ export function structureDrawing(model, increment, view) {
   drawLoads(loads, extent, traces, { ...common, most: largest.load });
   new ContactDrawing(model, increment, extent, traces, { ...common, most: largest.reaction });
   const hasNames = detail.canHaveNames && (view.hasNames ?? detail.hasNames);
-  new NodeDrawing(model, increment, extent, traces, { ...common, loads: loads.forces, hasNames });
+  new NodeDrawing(model, increment, extent, traces, { ...common, loads: loads.forces, hasNames, most: largest.reaction });
   extent.show(traces.reach);
   if (forces.isComputed && largest.axial > 0 && !isAtRest) {
     detail.leave("Forces of elements are not all recorded; those that are not are computed from the displacements");
@@ -71,10 +75,11 @@ function largestValue(largest, kind, forces) {
   return largest.diagram[kind] ?? 0;
 }
 
-function keepLargest(largest, increment, loads, forces) {
+function keepLargest(largest, increment, loads, forces, { dimension }) {
   for (const { normal_reaction: normal, tangential_reaction: tangential } of increment.contacts) {
     largest.reaction = Math.max(largest.reaction, Math.hypot(normal, ...tangential));
   }
+  for (const force of Object.values(increment.supports ?? {})) largest.reaction = Math.max(largest.reaction, Math.hypot(...force.slice(0, dimension)));
   largest.load = Math.max(largest.load, largestOf(loads.forces));
   for (const { axial, equivalent } of forces.of) {
     largest.axial = Math.max(largest.axial, Math.abs(axial ?? 0));

@@ -1,6 +1,6 @@
 // Elements in the picture of a structure: bars and beams coloured by their axial force, springs, and where they were undeformed.
 
-import { beamShape } from "./beam-shape.js";
+import { beamShape, spaceBeamShape } from "./beam-shape.js";
 import { diagramValues } from "./force-diagrams.js";
 import { fromSheet } from "./plot-style.js";
 import { edgesOf, isSolid } from "./structure-solids.js";
@@ -48,10 +48,11 @@ export class ElementDrawing {
       traces.element("spring", [before[0], ends[0]], this.spring, words);
     } else {
       const isBeam = item.kind === "beam" && model.dimension === 2;
-      const unstressed = isBeam ? beamShape(model, item, before, before.map(() => 0)) : before;
+      const inSpace = () => spaceBeamShape(model, item, before, before.map(() => [0, 0, 0]));
+      const unstressed = isBeam ? beamShape(model, item, before, before.map(() => 0)) : item.kind === "beam" ? inSpace() : before;
       if (!detail.isLarge) traces.lines("undeformed", [unstressed], this.faint);
       if (isBeam) this.beam(item, ends, forces.of[number], named);
-      else if (item.kind === "beam") this.spaceBeam(ends, forces.of[number], named);
+      else if (item.kind === "beam") this.spaceBeam(item, ends, forces.of[number], named);
       else if (item.kind !== "spring") this.bar(ends, axial, named, forces.of[number]);
       else traces.element("spring", ends, this.spring, [...named, `force ${components(force ?? [], units.force)}`]);
     }
@@ -99,15 +100,15 @@ export class ElementDrawing {
     });
   }
 
-  /** In space, straight from node to node. */
-  spaceBeam(places, found, named) {
+  spaceBeam(item, places, found, named) {
     const { units } = this;
     const all = (of) => found.ends.flatMap(of).map((value) => moment(value, units)).join(", ");
     const atEnds = found.ends ? [
       `torsional moments ${all((end) => end.torsional_moment)} at its ends`,
       `bending moments ${all((end) => end.bending_moments)} at its ends`,
     ] : [];
-    this.bar(places, found.axial, [...named, ...atEnds], found);
+    const shape = spaceBeamShape(this.model, item, places, item.nodes.map(this.rotation));
+    this.bar(shape, found.axial, [...named, ...atEnds], found);
   }
 
   /** A circle beside the node, on the beam that is hinged to it. */

@@ -21,13 +21,13 @@ export function structureKey(place, model) {
     elements.some(({ kind }) => kind === "spring") ? swatch("", "spring", "dashed") : null,
     elements.some(({ releases }) => Object.keys(releases ?? {}).length) && !isLarge ? sign("--text", "○", "hinge") : null,
     elements.some(({ kind }) => kind === "rotational_spring") && !isLarge ? sign("--text", "@", "rotational spring") : null,
-    Object.keys(model.supports ?? {}).length ? sign("--text", "△", "support") : null,
+    Object.keys(model.supports ?? {}).length ? [sign("--text", "△", "support"), sign("--support", "→", "reaction of a support")] : null,
     brings("forces") ? sign("--load", "→", "load") : null,
     brings("moments") ? sign("--load", "↺", "moment") : null,
     brings("displacements") ? sign("--imposed", "→", "imposed displacement") : null,
     contacts.length ? [
       ...STATES.map(([state, , colour]) => swatch(`--colour:var(${colour})`, state, `state ${state}`)),
-      sign("--text", "→", "reaction"),
+      sign("--text", "→", "reaction of a contact"),
       ...(contacts.some(({ friction }) => friction > 0)
         ? [sign("--slip", "→", "slip direction"), sign("--cone", "∨", "friction cone")] : []),
     ] : []);

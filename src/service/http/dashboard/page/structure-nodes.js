@@ -9,6 +9,8 @@ const AXES = "xyz";
 /** The height of the triangle of a support, and of one in a large structure, as parts of the extent. */
 const SUPPORT = 0.035;
 const SMALL = 0.015;
+/** The length of the largest reaction, as a part of the extent, and the part of it below which a reaction has no arrow. */
+const [ARROW, SMALLEST] = [0.22, 1e-6];
 
 /** Lines on a contact. */
 export function contactWords(contact, units) {
@@ -20,11 +22,12 @@ export function contactWords(contact, units) {
 }
 
 export class NodeDrawing {
-  /** `loads`: node to force. */
-  constructor(model, increment, extent, traces, { now, loads, units, detail, hasNames }) {
-    Object.assign(this, { model, increment, extent, traces, now, loads, units, detail });
+  /** `loads`: node to force; `most`: the reaction whose arrow has its full length. */
+  constructor(model, increment, extent, traces, { now, loads, units, detail, hasNames, most }) {
+    Object.assign(this, { model, increment, extent, traces, now, loads, units, detail, most });
     this.contacts = Map.groupBy(increment.contacts, ({ node }) => node);
     this.supports();
+    this.reactions();
     this.nodes();
     if (hasNames) traces.names(now, fromSheet("--text"));
   }
@@ -50,6 +53,18 @@ export class NodeDrawing {
           value - (which === axis ? height : 0) + (which === beside ? aside * height : 0));
         traces.lines("support", [[place, corner(-0.6), corner(0.6), place]], line);
       }
+    }
+  }
+
+  /** The forces of supports on the structure. */
+  reactions() {
+    const { increment, model, detail, traces, now, extent, most } = this;
+    const forces = Object.entries(increment.supports ?? {}).map(([name, force]) => [name, force.slice(0, model.dimension)])
+      .filter(([name, force]) => now.has(name) && Math.hypot(...force) > SMALLEST * most);
+    for (const [name, force] of detail.arrows(forces, "reactions of supports")) {
+      const place = now.get(name);
+      traces.arrow("reaction of a support", place, plus(place, force, (ARROW * extent.size) / most), fromSheet("--support"),
+        { words: this.words(name), isAtHead: true });
     }
   }
 

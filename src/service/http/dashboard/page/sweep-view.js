@@ -6,6 +6,7 @@ import { axis, colourOf } from "./plot-style.js";
 import { RowsView } from "./rows-view.js";
 import { addressOfJob, openJobs } from "./state.js";
 import { placeWords, valueWords } from "./sweep-values.js";
+import { headed } from "./units.js";
 import { plainWords, short, verbatim } from "./words.js";
 
 /** Milliseconds between drawings while rows come in. */
@@ -35,7 +36,8 @@ export class SweepView extends RowsView {
     const [response] = responses;
     const drawnOf = (row) => (response === undefined ? row.first_limit?.load_factor ?? null : row.responses?.[response] ?? null);
     const isNumber = (row) => typeof drawnOf(row) === "number";
-    const told = response ?? "first limit load factor";
+    const unitOf = (name) => this.record.response_units?.[name];
+    const told = response === undefined ? "first limit load factor" : headed(response, unitOf(response));
     const without = rows.filter((row) => !isNumber(row)).length;
     this.words.textContent = `${response === undefined ? "The load at the first limit point" : `“${response}”`} of each path.`
       + (without ? ` ${without} have ${response === undefined ? "none" : "no number of it"}.` : "");
@@ -59,7 +61,7 @@ export class SweepView extends RowsView {
     fill(this.listing,
       element("div", { class: "actions" }, button(`Draw the paths of ${drawn.length === rows.length ? "all" : `the first ${drawn.length}`} runs`,
         () => openJobs(drawn.map(({ job }) => job)), { "data-key": "overlay", id: "overlay" })),
-      table(["run", ...names, ...responses, "limit load", "kind", "at increment", "ends", ""], rows.slice(0, LISTED).map((row) => [
+      table(["run", ...names, ...responses.map((name) => headed(name, unitOf(name))), "limit load", "kind", "at increment", "ends", ""], rows.slice(0, LISTED).map((row) => [
         row.run, ...row.values.map((value) => (typeof value === "number" ? value : valueWords(value))),
         ...responses.map((name) => shown(row.responses?.[name])),
         row.first_limit ? Number(short(row.first_limit.load_factor)) : null, row.first_limit ? plainWords(row.first_limit.kind) : null,

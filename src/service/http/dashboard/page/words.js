@@ -13,7 +13,7 @@ const STOPPED = {
 };
 /** Stop reasons as ends of a path, in a word or two. Few of them are mistakes: a mechanism is what a path may well end in. */
 const ENDED = {
-  max_increments: "all increments used", no_direction: "no direction on", no_equilibrium: "no state at rest", step_underflow: "step too short",
+  no_limit_point: "no curve", max_increments: "all increments used", no_direction: "no direction on", no_equilibrium: "no state at rest", step_underflow: "step too short",
   storage_limit: "storage limit", time_limit: "time limit",
 };
 const STATUS = {
