@@ -2,6 +2,7 @@
 
 use crate::model::input::error::{InputError, InputErrors};
 use crate::model::input::limits::{MAX_NAME_BYTES, MAX_SWEEP_PLACES, MAX_SWEEP_RESPONSES, MAX_SWEEP_RUNS};
+use crate::model::input::names::suggestion;
 use crate::model::request::column_units::unit_of;
 use crate::model::request::response::Response;
 use crate::model::request::sweep::{Combine, SweepParameter, Variation};
@@ -258,7 +259,8 @@ fn add_places(at: &Value, walked: String, left: &str, most: usize, places: &mut 
         Value::Object(members) => match members.get(&name) {
             Some(value) => add_places(value, format!("{walked}/{step}"), rest, most, places),
             None if left.split('/').any(|step| step == ANY) => {
-                Err(format!("`{}` has no member `{name}` whose items could be replaced", here()))
+                let near = suggestion(&name, members.keys().map(String::as_str));
+                Err(format!("`{}` has no member `{name}` whose items could be replaced{near}", here()))
             }
             None => {
                 places.push(walked + left);

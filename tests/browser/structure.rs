@@ -263,6 +263,26 @@ async fn a_beam_in_space_is_curved_and_its_support_pushes() {
         "Math.max(...{STRUCTURE}.data.filter(({{name}}) => name?.startsWith('bar ')).map(({{x}}) => x.length))"
     );
     assert!(browser.ask(&points).await.as_f64().is_some_and(|points| points > 10.0), "the beam is bent");
+    // What is in the way can be left out.
+    for what in ["loads", "reactions"] {
+        let drawn = trace(if what == "loads" { "load" } else { "reaction of a support" });
+        browser.press(&format!("#show-{what}")).await;
+        browser.until(&format!("{drawn} === undefined")).await;
+        browser.press(&format!("#show-{what}")).await;
+        browser.until(&format!("{drawn} !== undefined")).await;
+    }
+    // Forces and reactions as tables.
+    let heading =
+        |words: &str| format!("document.querySelector('#contacts h2')?.textContent.startsWith('{words} at increment')");
+    browser.until(&heading("Members")).await;
+    browser.put("#states-kind", "supports").await;
+    browser.until(&heading("Supports")).await;
+    let holds = "document.querySelector('#contacts tbody td:nth-child(2)').textContent";
+    assert_eq!(browser.ask(holds).await, "x, y, z, rx, ry, rz");
+    browser.visit(&format!("{}/?jobs={id},abc", served.url())).await;
+    browser
+        .until("document.getElementById('notice').textContent.includes('“abc” where the id of a job is expected')")
+        .await;
     browser.visit(&format!("{}/?jobs=abc", served.url())).await;
     browser
         .until("document.getElementById('notice').textContent.includes('“abc” where the id of a job is expected')")

@@ -1,5 +1,6 @@
 //! Selected members of the increments of a path as arrays, for plots of long paths.
 
+use crate::model::input::names::{quoted, suggestion_of_all};
 use crate::result::increment::Point;
 use crate::service::http::answer::problem::Problem;
 use crate::service::http::answer::tag;
@@ -22,6 +23,26 @@ use utoipa::ToSchema;
 const POINT: &str = "point";
 const ROWS: u32 = 10_000;
 const COLUMNS: usize = 32;
+/// The members of an increment, as it is stored.
+const MEMBERS: [&str; 17] = [
+    "index",
+    "stage",
+    "load_factor",
+    "arc_length",
+    "step",
+    "displacements",
+    "contacts",
+    "elements",
+    "supports",
+    "applied_forces",
+    "point",
+    "directions",
+    "stability",
+    "other_motion",
+    "energy",
+    "diagnostics",
+    "measure",
+];
 /// Bytes of the increments that are read from the store at a time.
 const PART: usize = 1 << 20;
 /// An answer ends early once it has this many bytes.
@@ -86,7 +107,9 @@ pub async fn columns(
     target: Target<Job>,
     Parameters(parameters): Parameters<ColumnParameters>,
 ) -> Result<Response, Problem> {
-    let members = Arc::new(members(parameters.of.as_deref().unwrap_or_default())?);
+    let members = members(parameters.of.as_deref().unwrap_or_default())?;
+    refuse_unknown(&members)?;
+    let members = Arc::new(members);
     let mut after = index("after", parameters.after)?;
     let mut left = bounded("limit", parameters.limit, ROWS, ROWS)?;
     let is_finished = target.standing().await?.status.is_ended();
@@ -133,6 +156,16 @@ fn members(of: &str) -> Result<Vec<Member>, Problem> {
         }
         _ => Ok(members),
     }
+}
+
+/// A member that no increment has is rather a name that is spelt otherwise.
+fn refuse_unknown(members: &[Member]) -> Result<(), Problem> {
+    let unknown = |member: &&Member| member.steps.first().is_none_or(|first| !MEMBERS.contains(&first.as_str()));
+    let Some(member) = members.iter().find(unknown) else { return Ok(()) };
+    let first = member.steps.first().map(String::as_str).unwrap_or_default();
+    let near = suggestion_of_all(first, MEMBERS.into_iter());
+    let columns = "a displacement, a column `tip.x` of path.csv, is `/displacements/tip/0` here";
+    Err(Problem::not_found(format_args!("member {} of an increment{near}; {columns}", quoted(first))))
 }
 
 fn unescaped(step: &str) -> String {
@@ -290,6 +323,8 @@ impl Visitor<'_> for PlaceOf<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::result::increment::Increment;
+    use utoipa::PartialSchema;
 
     #[test]
     fn members_are_taken_as_they_are_written() {
@@ -304,6 +339,19 @@ mod tests {
             written,
             r#"{"index":[4],"columns":{"load_factor":[-0.10],"/displacements/a~2b/1":[2e-3],"/displacements/c~1d/0":[7],"/displacements/c~1d/1":[null],"/stage/x":[null],"step":[null],"/stage":["push"]},"points":[{"index":4,"point":{"kind":"end","bifurcation":false}}],"next_after":null}"#
         );
+    }
+
+    #[test]
+    fn members_of_increments_are_known_and_others_refused() {
+        let schema = serde_json::to_value(Increment::schema()).unwrap();
+        let mut named: Vec<&str> = schema["properties"].as_object().unwrap().keys().map(String::as_str).collect();
+        named.push("measure");
+        named.sort_unstable();
+        let mut known = MEMBERS;
+        known.sort_unstable();
+        assert_eq!(named, known);
+        assert!(refuse_unknown(&members("load_factor,/displacements/tip/0").unwrap()).is_ok());
+        assert!(refuse_unknown(&members("load_factor,loadfactor").unwrap()).is_err());
     }
 
     #[test]

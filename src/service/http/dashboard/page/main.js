@@ -56,8 +56,12 @@ callsList(byId("calls"));
 function unreadable() {
   const now = state();
   const given = new URLSearchParams(location.search);
-  const wrong = ["jobs", "study", "sweep", "curve"].find((name) => given.get(name) && !(name === "jobs" ? now.jobs.length : now[name]));
-  return wrong ? `The address has “${given.get(wrong)}” where the id of a ${wrong.replace("jobs", "job")} is expected. Choose one from the list.` : null;
+  for (const name of ["jobs", "study", "sweep", "curve"]) {
+    const known = (name === "jobs" ? now.jobs : [now[name]]).map((id) => id?.toLowerCase());
+    const wrong = (given.get(name) ?? "").toLowerCase().split(",").find((id) => id && !known.includes(id));
+    if (wrong) return `The address has “${wrong}” where the id of a ${name.replace("jobs", "job")} is expected. Choose one from the list.`;
+  }
+  return null;
 }
 
 function view(before) {
@@ -70,7 +74,7 @@ function view(before) {
     // What is shown now begins at the top.
     if (before) scrollTo({ top: 0 });
     titled(now.run ? "New run" : "");
-    say(now.run || now.jobs.length ? "" : unreadable() ?? (now.study || now.sweep || now.curve ? "Loading …" : "Choose a job, or start one with New run."));
+    say(now.run ? "" : unreadable() ?? (now.jobs.length ? "" : now.study || now.sweep || now.curve ? "Loading …" : "Choose a job, or start one with New run."));
     studyView.show(now.run ? null : now.study);
     sweepView.show(now.run ? null : now.sweep);
     curveView.show(now.run ? null : now.curve);

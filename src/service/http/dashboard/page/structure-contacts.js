@@ -16,7 +16,7 @@ export const STATES = [["free", "circle-open", "--free"], ["stick", "square", "-
 
 export class ContactDrawing {
   /** `most`: the reaction whose arrow has its full length. */
-  constructor(model, increment, extent, traces, { now, moved, most, units, detail }) {
+  constructor(model, increment, extent, traces, { now, moved, most, units, detail, hasReactions }) {
     Object.assign(this, { model, extent, traces, now, moved, most, units, detail });
     this.friction = new Map((model.contacts ?? []).map((item) => [`${item.node}\n${counterpart(item)}`, item.friction ?? 0]));
     const { contacts } = increment;
@@ -28,8 +28,8 @@ export class ContactDrawing {
     if (lacking > 0) detail.leave(`${lacking} contacts of nodes that are not recorded are not drawn`);
     for (const contact of marked) this.mark(contact);
     const rough = closed.filter((contact) => this.frictionOf(contact) > 0);
-    if (rough.length && detail.hasCones(rough.length)) rough.forEach((contact) => this.cone(contact));
-    const pushed = closed.map((contact) => [contact, this.reaction(contact)]).filter(([, force]) => length(force) > 0);
+    if (hasReactions && rough.length && detail.hasCones(rough.length)) rough.forEach((contact) => this.cone(contact));
+    const pushed = (hasReactions ? closed : []).map((contact) => [contact, this.reaction(contact)]).filter(([, force]) => length(force) > 0);
     for (const [contact, force] of detail.arrows(pushed, "reactions")) this.arrow(contact, force);
     const slipping = closed.map((contact) => [contact, this.along(contact, contact.slip)])
       .filter(([contact, slip]) => contact.status === "slip" && length(slip) > 0);

@@ -24,7 +24,7 @@ export const nothingDrawn = () => ({ reaction: LEAST, load: LEAST, axial: 0, dia
 
 /**
  * Traces of `increment` of a model. `turn`: from where it is seen; `exaggeration`: of displacements; `hasNames`: of nodes, null
- * for the usual; `diagram`: of the forces in members, null for none; `extent` and `largest`: of what has been drawn so far, widened by this; `reached`: load factor that each stage
+ * for the usual; `hides`: a set of `loads`, `reactions`, `obstacles`; `hasOwnScale`: colours span the forces of this increment; `diagram`: of the forces in members, null for none; `extent` and `largest`: of what has been drawn so far, widened by this; `reached`: load factor that each stage
  * came to. Answers `{traces, leftOut}`, the latter sentences on what is not in the picture.
  */
 export function structureDrawing(model, increment, view) {
@@ -49,15 +49,19 @@ export function structureDrawing(model, increment, view) {
   // Where nodes are drawn further on, so are the obstacles that push them.
   const isAtRest = increment.index === null;
   const moved = new Map(isAtRest ? [] : [...loads.motions].map(([name, motion]) => [name, times(motion, exaggeration)]));
-  const colours = new ForceColours(model, largest.axial);
+  const hides = view.hides ?? new Set();
+  const here = () => forces.of.reduce((most, { axial }) => Math.max(most, Math.abs(axial ?? 0)), 0);
+  const colours = new ForceColours(model, view.hasOwnScale ? here() : largest.axial);
   const stressColours = new StressColours(largest.stress ?? 0);
   const common = { now, moved, units, detail };
-  new ObstacleDrawing(model, extent, traces, { ...common, moves: loads.motions });
+  if (!hides.has("obstacles")) new ObstacleDrawing(model, extent, traces, { ...common, moves: loads.motions });
   new ElementDrawing(model, traces, { ...common, forces, colours, stressColours, rotation, diagrams, size: extent.size });
-  drawLoads(loads, extent, traces, { ...common, most: largest.load });
-  new ContactDrawing(model, increment, extent, traces, { ...common, most: largest.reaction });
+  if (!hides.has("loads")) drawLoads(loads, extent, traces, { ...common, most: largest.load });
+  new ContactDrawing(model, increment, extent, traces, { ...common, most: largest.reaction, hasReactions: !hides.has("reactions") });
   const hasNames = detail.canHaveNames && (view.hasNames ?? detail.hasNames);
-  new NodeDrawing(model, increment, extent, traces, { ...common, loads: loads.forces, hasNames, most: largest.reaction });
+  new NodeDrawing(model, increment, extent, traces, {
+    ...common, loads: loads.forces, hasNames, most: largest.reaction, hasReactions: !hides.has("reactions"),
+  });
   extent.show(traces.reach);
   if (forces.isComputed && largest.axial > 0 && !isAtRest) {
     detail.leave("Forces of elements are not all recorded; those that are not are computed from the displacements");

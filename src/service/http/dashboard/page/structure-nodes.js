@@ -23,11 +23,11 @@ export function contactWords(contact, units) {
 
 export class NodeDrawing {
   /** `loads`: node to force; `most`: the reaction whose arrow has its full length. */
-  constructor(model, increment, extent, traces, { now, loads, units, detail, hasNames, most }) {
+  constructor(model, increment, extent, traces, { now, loads, units, detail, hasNames, most, hasReactions }) {
     Object.assign(this, { model, increment, extent, traces, now, loads, units, detail, most });
     this.contacts = Map.groupBy(increment.contacts, ({ node }) => node);
     this.supports();
-    this.reactions();
+    if (hasReactions) this.reactions();
     this.nodes();
     if (hasNames) traces.names(now, fromSheet("--text"));
   }

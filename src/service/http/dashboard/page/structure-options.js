@@ -1,4 +1,5 @@
-// How the structure is drawn, as the reader chooses it: the exaggeration of its displacements, and the names of its nodes.
+// How the structure is drawn, as the reader chooses it: the exaggeration of its displacements, the names of its nodes, what is
+// left out, and which forces the colours span.
 
 import { button, element, fill } from "./dom.js";
 
@@ -31,11 +32,23 @@ export class StructureOptions {
     const kinds = Object.entries(DIAGRAMS).map(([kind, { words }]) => element("option", { value: kind }, words));
     this.kinds = element("select", { id: "diagram", onchange: () => changed() }, element("option", { value: "" }, "none"), kinds);
     this.diagrams = element("label", { hidden: true }, "diagram ", this.kinds);
+    /** What is left out of the picture by the reader's choice. */
+    this.hides = new Set();
+    const shown = (what) => element("label", {}, element("input", {
+      type: "checkbox", id: `show-${what}`, checked: true, onchange: ({ target }) => {
+        if (target.checked) this.hides.delete(what);
+        else this.hides.add(what);
+        changed();
+      },
+    }), ` ${what}`);
+    this.ownScale = element("input", { type: "checkbox", id: "own-scale", onchange: () => changed() });
     this.place = element("div", { class: "choices" });
     fill(this.place, element("label", {}, "displacements × ", this.factor),
       button("Fit", () => this.exaggerate(String(fitted())), {
         id: "fit-exaggeration", title: "Choose a factor at which the displacements are seen",
-      }), element("label", {}, this.names, " names of nodes"), this.diagrams, this.larger(), this.problem);
+      }), element("label", {}, this.names, " names of nodes"), ["loads", "reactions", "obstacles"].map(shown),
+      element("label", { title: "Colours from the largest force of this increment, in place of that of the path so far" }, this.ownScale, " colours of this increment"),
+      this.diagrams, this.larger(), this.problem);
   }
 
   larger() {

@@ -12,6 +12,15 @@ import { kindWords, short } from "./words.js";
 /** What draws is loaded when something is drawn, as the path comes first. */
 const drawing = () => import("./structure-scene.js");
 
+/** What is not certain of the directions at an increment. */
+function doubts(shown) {
+  const { unexplored_modes: unexplored, degenerate } = shown?.point ?? {};
+  return [
+    unexplored ? `${unexplored} combinations of contact modes were not examined here: there may be other directions.` : null,
+    degenerate ? "The directions here may not be all (degenerate)." : null,
+  ];
+}
+
 export class StructurePlot {
   /** Tells `chosen(index)`, `pointedAt(yes)`, `seen({turn} or {exaggeration})` as the reader changes it, and
    *  `shown(path, increment)`; `turn` and `exaggeration` as the address has them. */
@@ -52,8 +61,8 @@ export class StructurePlot {
   }
 
   get view() {
-    const { exaggeration, hasNames, diagram } = this.options;
-    return { turn: this.seen.view, exaggeration, hasNames, diagram };
+    const { exaggeration, hasNames, diagram, hides, ownScale } = this.options;
+    return { turn: this.seen.view, exaggeration, hasNames, diagram, hides, hasOwnScale: ownScale.checked };
   }
 
   /** Another increment, or a path that has grown. */
@@ -159,7 +168,7 @@ export class StructurePlot {
       ? "No increment yet: the structure as the model has it, with the loads of all its stages at load factor 1."
       : `Increment ${shown.index}, ${kindWords(shown.point.kind)}, stage “${shown.stage}”, load factor `
       + `${short(shown.load_factor)}${shown.point.event ? `: ${shown.point.event}` : ""}${notRecorded}`;
-    const sentences = [...leftOut.map((words) => `${words}.`), this.playback.words].filter(Boolean);
+    const sentences = [...leftOut.map((words) => `${words}.`), ...doubts(shown), this.playback.words].filter(Boolean);
     // Not at each increment that is played.
     if (this.left.dataset.of === sentences.join()) return;
     this.left.dataset.of = sentences.join();
