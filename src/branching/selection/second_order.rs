@@ -6,21 +6,19 @@
 //! decides where the path bends little (`trial_step`), but not where a part attached to the contact is at its fold.
 
 use crate::branching::bifurcation::branch_directions::tolerances::COINCIDENCE_COSINE;
-use crate::branching::bifurcation::branch_directions::{
-    SecondOrderFindings, SingularPoint, in_each_mode, is_doubly_singular,
-};
+use crate::branching::bifurcation::branch_directions::{SecondOrderFindings, SingularPoint, in_each_mode};
 use crate::branching::directions::feasible_direction::{DirectionChoice, PriorMotion, mark_retrace, sign_of};
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::state::State;
 
-/// Whether directions of first order at the end of a slip may be mere round-off, or a direction is missing; or whether a stage
-/// begins where the structure can move without its load, as at a limit point, and the load does no work on that motion: then
-/// first order tells no direction.
-pub(crate) fn is_asked(here: SingularPoint<'_>, options: &[DirectionChoice], before: PriorMotion<'_>) -> bool {
-    let SingularPoint { loading, state, .. } = here;
-    let PriorMotion::Incoming(incoming) = before else {
-        let is_at_rest = state.displacement.iter().all(|value| *value == 0.0);
-        return !is_at_rest
-            && options.iter().any(|option| !option.mechanism && is_doubly_singular(here, &option.modes));
-    };
+/// Whether directions of first order at the end of a slip may be mere round-off, or a direction is missing.
+pub(crate) fn is_asked(
+    loading: Loading<'_>,
+    state: &State,
+    options: &[DirectionChoice],
+    before: PriorMotion<'_>,
+) -> bool {
+    let PriorMotion::Incoming(incoming) = before else { return false };
     // An odd count indicates that a direction is missing, or that there is one too many.
     let is_odd = options.len() % 2 == 1;
     let is_doubtful =

@@ -95,13 +95,13 @@ pub fn decide(
     rules: Rules<'_>,
 ) -> Decision {
     let (options, found) = list(loading, state, standings, before, rules);
-    let here = SingularPoint { loading, state, standings, force_scale: rules.force_scale };
-    let is_doubtful = second_order::is_asked(here, &options, before);
+    let is_doubtful = second_order::is_asked(loading, state, &options, before);
     let decision = taken_of(loading, options, &found, before, rules);
     let ends = matches!(decision.stop, Some(StopReason::Degenerate | StopReason::NoDirection));
     if !(ends || is_doubtful) || found.unexplored > 0 || rules.effort.cancel.is_cancelled() {
         return decision;
     }
+    let here = SingularPoint { loading, state, standings, force_scale: rules.force_scale };
     let Some(SecondOrderFindings { options, unclear }) = second_order::directions(here, before) else {
         return decision;
     };

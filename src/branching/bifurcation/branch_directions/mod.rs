@@ -34,7 +34,7 @@ pub(crate) mod second_order_by_contact_mode;
 mod tests;
 pub(crate) mod tolerances;
 
-pub use second_order_by_contact_mode::{SecondOrderFindings, in_each_mode, is_doubly_singular};
+pub use second_order_by_contact_mode::{SecondOrderFindings, in_each_mode};
 
 use crate::algebra::{nearest_null_space, null_space_as_scaled};
 use crate::branching::bifurcation::branch_directions::tolerances::{

@@ -16,7 +16,6 @@
 //!
 //! Used where the path would otherwise end: it takes a few factorisations for every combination of modes.
 
-use crate::algebra::null_space_as_scaled;
 use crate::branching::bifurcation::branch_directions::null_plane_at_fold;
 use crate::branching::bifurcation::branch_directions::null_plane_at_fold::{Fold, Plane};
 use crate::branching::bifurcation::branch_directions::tolerances::{
@@ -25,14 +24,12 @@ use crate::branching::bifurcation::branch_directions::tolerances::{
 use crate::branching::bifurcation::branch_directions::{
     BranchingPoint, CachedFactorisation, MOST_MODES, Null, RADII, SingularPoint,
 };
-use crate::branching::bifurcation::singularity::tolerances::SINGULAR_PIVOT;
 use crate::branching::directions::candidate::{CandidateDirection, is_mechanism};
 use crate::branching::directions::feasible_direction::DirectionChoice;
 use crate::branching::directions::trial_step::confirm_by;
 use crate::complementarity::rates::cartesian_product::{combinations, count};
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::scaled;
-use crate::mechanics::equations::scaled_rows::scaled_rows;
 use crate::mechanics::equations::{ModeSystem, mode_factorisation, null_motion_suppression, rate_recovery};
 use crate::mechanics::multi_contact::changeable_contacts::Standing;
 use crate::mechanics::problem::state::{Rate, State};
@@ -87,17 +84,6 @@ pub fn in_each_mode(here: SingularPoint<'_>) -> Option<SecondOrderFindings> {
         }
     }
     Some(told)
-}
-
-/// Whether the equations of a mode have a second null vector here. It is not looked for in structures whose equations are
-/// sparse.
-pub fn is_doubly_singular(here: SingularPoint<'_>, modes: &[Mode]) -> bool {
-    let system = ModeSystem::new(here.loading, modes, here.state);
-    if here.loading.structure.layout().is_some() || system.has_tracks() {
-        return false;
-    }
-    let (matrix, _) = scaled_rows(&system, here.loading, here.state);
-    null_space_as_scaled(matrix, SINGULAR_PIVOT).is_some_and(|nulls| nulls.ncols() > 1)
 }
 
 /// The modes that each contact admits.
