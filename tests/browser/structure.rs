@@ -279,6 +279,11 @@ async fn a_beam_in_space_is_curved_and_its_support_pushes() {
     browser.until(&heading("Supports")).await;
     let holds = "document.querySelector('#contacts tbody td:nth-child(2)').textContent";
     assert_eq!(browser.ask(holds).await, "x, y, z, rx, ry, rz");
+    browser.visit(&format!("{}/?jobs={id},abc", served.url())).await;
+    browser.until(&format!("{} !== undefined", trace("reaction of a support"))).await;
+    browser
+        .until("document.getElementById('notice').textContent.includes('“abc” where the id of a job is expected')")
+        .await;
     browser.visit(&format!("{}/?jobs=abc", served.url())).await;
     browser
         .until("document.getElementById('notice').textContent.includes('“abc” where the id of a job is expected')")

@@ -243,7 +243,7 @@ impl<'a> CriticalCurve<'a> {
 
     /// Where the path comes to take another direction at a point of the history, between the last point of the curve and a
     /// solved one; the directions at the solved one are kept where it does not.
-    fn other_direction(&self, walk: &mut Walk, solved: &SolvedHistory, scene: &Scene) -> Option<OtherDirection> {
+    fn other_direction(&mut self, walk: &mut Walk, solved: &SolvedHistory, scene: &Scene) -> Option<OtherDirection> {
         let CurvePosition { history, here, .. } = &walk.place;
         let at = |scene: &Scene, solved: &SolvedHistory| TakenDirections::of(history, scene, solved, &self.cancel);
         let before = match walk.taken.take() {
@@ -255,20 +255,23 @@ impl<'a> CriticalCurve<'a> {
             walk.taken = Some(after);
             return None;
         }
-        let mut work = Work::default();
         let (mut low, mut high) = (here.parameter, solved.parameter);
         let mut found = (scene.clone(), solved.clone(), after);
-        while (high - low).abs() > PREFERENCE_WIDTH * (self.range.to - self.range.from) {
+        while (high - low).abs() > PREFERENCE_WIDTH * (self.range.to - self.range.from) && !self.cancel.is_cancelled() {
             let middle = low.midpoint(high);
             let Ok(scene) = (self.family)(middle) else { break };
             let guesses = extrapolated(&walk.place, &scene, middle);
-            let Some(solved) = SolvedHistory::of(history, &scene, middle, &guesses, &mut work) else { break };
+            let Some(solved) = SolvedHistory::of(history, &scene, middle, &guesses, &mut self.work) else { break };
             let taken = at(&scene, &solved);
             if before.first_difference(&taken).is_none() {
                 low = middle;
             } else {
                 (high, found) = (middle, (scene, solved, taken));
             }
+        }
+        // A search that was cut short says nothing of the directions.
+        if self.cancel.is_cancelled() {
+            return None;
         }
         let (scene, at, taken) = found;
         let point = before.first_difference(&taken)?;

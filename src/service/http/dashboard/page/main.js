@@ -38,7 +38,8 @@ tokenPrompt(byId("token"));
 const lists = new TaskLists(byId("lists"));
 const changed = () => lists.load();
 const jobView = new JobView({
-  said: say, titled, changed, connection, continued: (curve) => { changed(); openCurve(curve.id); },
+  // What the address has wrong stays told while its paths are shown.
+  said: (words, again) => say(words || (unreadable() ?? ""), again), titled, changed, connection, continued: (curve) => { changed(); openCurve(curve.id); },
 });
 const told = { failed: (problem) => say(problem.message), shown: (words) => { say(""); titled(words); }, changed, connection };
 const studyView = new StudyView(byId("study"), told);
