@@ -19,6 +19,10 @@ pub trait Cells {
 
     fn nothing(&mut self);
 
+    fn flag(&mut self, is_set: bool) {
+        self.word(if is_set { "true" } else { "false" });
+    }
+
     /// A number, or nothing.
     fn optional(&mut self, value: Option<f64>) {
         match value {

@@ -29,8 +29,12 @@ pub struct Table {
     has_stability: bool,
 }
 
+/// Names of the columns that say what is not known of the directions at a point.
+pub(crate) const OF_DIRECTIONS: [&str; 3] = ["better_direction", "unexplored_modes", "degenerate"];
+
 /// Names of the columns of stability, the last ones.
-const OF_STABILITY: [&str; 3] = ["stability.negative_eigenvalues", "stability.dead_load", "stability.instability"];
+pub(crate) const OF_STABILITY: [&str; 3] =
+    ["stability.negative_eigenvalues", "stability.dead_load", "stability.instability"];
 
 #[derive(Debug, Clone)]
 struct ElementColumns {
@@ -212,6 +216,7 @@ impl Table {
         names.extend(["elapsed_s", "residual", "complementarity", "energy_error", "error_estimate"].map(str::to_owned));
         names.extend(counts(&Diagnostics::default()).map(|(name, _)| name.to_owned()));
         names.extend(Errors::NAMES.map(|name| format!("measure.{name}")));
+        names.extend(OF_DIRECTIONS.map(str::to_owned));
         if self.has_stability {
             names.extend(OF_STABILITY.map(str::to_owned));
         }
@@ -246,7 +251,7 @@ impl Table {
         line.number(increment.arc_length);
         line.number(increment.step);
         line.word(point_kind(increment.point.kind));
-        line.word(if increment.point.bifurcation { "true" } else { "false" });
+        line.flag(increment.point.bifurcation);
         line.text(increment.point.event.as_deref().unwrap_or_default());
         let tangents = self.dimension - 1;
         for node in &self.nodes {
@@ -310,6 +315,9 @@ impl Table {
             line.count(count);
         }
         line.numbers(measure.map(Errors::values).as_ref().map_or(&[], <[f64; _]>::as_slice), Errors::NAMES.len());
+        line.flag(increment.point.better_direction);
+        line.count(increment.point.unexplored_modes);
+        line.flag(increment.point.degenerate);
         if self.has_stability {
             let stability = increment.stability;
             line.optional(stability.and_then(|found| found.negative_eigenvalues).map(|count| count as f64));
@@ -333,7 +341,7 @@ pub(crate) fn counts(diagnostics: &Diagnostics) -> [(&'static str, u64); 8] {
     ]
 }
 
-fn dead_load(stability: DeadLoadStability) -> &'static str {
+pub(crate) fn dead_load(stability: DeadLoadStability) -> &'static str {
     match stability {
         DeadLoadStability::Stable => "stable",
         DeadLoadStability::Unstable => "unstable",
@@ -341,7 +349,7 @@ fn dead_load(stability: DeadLoadStability) -> &'static str {
     }
 }
 
-fn instability(instability: Instability) -> &'static str {
+pub(crate) fn instability(instability: Instability) -> &'static str {
     match instability {
         Instability::Divergence => "divergence",
         Instability::Flutter => "flutter",

@@ -121,7 +121,11 @@ async fn a_sweep_shows_its_responses() {
     let mut request = scene("one-bar-truss");
     request["sweep"] = json!({
         "replace": {"/model/contacts/0/friction": [0.1, 0.2, 0.4]},
-        "responses": {"tip": {"value": "tip.x", "at": "first_limit"}, "at last": {"value": "tip/floor.status", "at": "end"}},
+        "responses": {
+            "tip": {"value": "tip.x", "at": "first_limit"},
+            "at last": {"value": "tip/floor.status", "at": "end"},
+            "load": {"value": "load_factor", "at": "end"},
+        },
     });
     let id = process::submit(&served.client, served.url(), "/v1/sweeps", &request).await;
     process::until(&served.client, served.url(), &format!("/v1/sweeps/{id}"), process::has_ended).await;
@@ -132,6 +136,8 @@ async fn a_sweep_shows_its_responses() {
     let rows = rows["rows"].as_array().expect("rows");
     let found = |run: usize| &rows.iter().find(|row| row["run"] == run).expect("a run")["responses"];
     assert_eq!(drawn, json!([found(0)["tip"], found(1)["tip"], found(2)["tip"]]));
+    browser.put("#sweep-response", "load").await;
+    browser.until(&format!("document.getElementById('sweep-plot').data[0].y[2] === {}", found(2)["load"])).await;
     let table = browser.ask("document.querySelector('#sweep table').textContent").await;
     let table = table.as_str().expect("text");
     assert!(table.contains("at last") && table.contains(found(0)["at last"].as_str().expect("a status")), "{table}");

@@ -1,8 +1,10 @@
 //! The feed of all changes: nothing is missed over broken connections and other processes, and nobody sees what is not theirs.
 
+use crate::common::engines::Database;
 use crate::common::server::{Event, EventStream, TestServer, settings};
 use crate::common::service::request;
 use crate::common::solver::MadeUp;
+use crate::on_both_engines;
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -41,13 +43,14 @@ async fn shown(
     }
 }
 
-#[tokio::test]
-async fn a_dashboard_follows_all_jobs_over_broken_connections_and_two_processes() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let database = folder.path().join("jobs.db");
+on_both_engines! {
+    a_dashboard_follows_all_jobs_over_broken_connections_and_two_processes,
+}
+
+async fn a_dashboard_follows_all_jobs_over_broken_connections_and_two_processes(database: Database) {
     let solver = MadeUp::holding_at(2);
-    let server = TestServer::start(&database, solver.clone()).await;
-    let other = TestServer::start(&database, MadeUp::default()).await;
+    let server = TestServer::start_on(database.open().await, solver.clone(), settings()).await;
+    let other = TestServer::start_on(database.open().await, MadeUp::default(), settings()).await;
     let mut open = feed(&server, None).await;
     let first = open.next().await.expect("an event");
     assert_eq!((first.event.as_str(), first.data.as_str()), ("begin", "{}"));

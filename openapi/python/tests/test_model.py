@@ -2,6 +2,7 @@
 
 import base64
 import json
+import os
 import pathlib
 import tempfile
 import unittest
@@ -217,6 +218,10 @@ class Building(unittest.TestCase):
         request = arcslip.Model.from_meshio(tagged, material="matter", plane="strain").request()["model"]
         self.assertEqual(request["surfaces"], {"low": {"faces": [["n0", "n1"]]}})
         self.assertEqual(request["sets"], {"body": {"elements": ["e0", "e1"]}})
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "bar.vtu")
+            meshio.write(file, meshio.Mesh(points[:2], [("line", numpy.array([[0, 1]]))]))
+            self.assertEqual(len(arcslip.Model.from_meshio(file, 3.0).request()["model"]["elements"]), 1)
         with self.assertRaisesRegex(ValueError, "either"):
             arcslip.Model.from_meshio(mesh)
         with self.assertRaisesRegex(ValueError, "no triangles"):

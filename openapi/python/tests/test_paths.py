@@ -192,6 +192,12 @@ class Program(unittest.TestCase):
         self.assertIsInstance(table, pandas.DataFrame)
         self.assertEqual(list(table["load_factor"]), [increment["load_factor"] for increment in path])
         self.assertGreaterEqual(len(path.limit_points), 1)
+        self.assertEqual(table.attrs["units"], {})
+        request = arcslip.scene("arch-type-truss")
+        request["model"]["units"] = {"length": "m", "force": "kN"}
+        units = arcslip.solve(request)[:2].to_frame().attrs["units"]
+        self.assertEqual((units["strain_energy"], units.get("load_factor")), ("kN m", None))
+        self.assertIn("m", units.values())
         axes = path.plot()
         self.assertTrue(any(line.get_linestyle() == "--" for line in axes.lines) == any(
             here["load_factor"] < before["load_factor"] and before["point"]["bifurcation"]
@@ -330,6 +336,8 @@ class Service(unittest.TestCase):
     def test_tables_of_sweeps(self):
         friction = {"/model/contacts/0/friction": numpy.array([0, 0.5])}
         responses = {"limit": {"at": "first_limit"}}
+        with self.assertRaisesRegex(TypeError, "did you mean 'responses'"):
+            self.client.sweep(self.client.scene("arch-type-truss"), friction, response=responses)
         sweep = self.client.sweep(self.client.scene("arch-type-truss"), friction, responses=responses)
         sweep.wait()
         table = sweep.to_frame()

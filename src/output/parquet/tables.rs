@@ -4,7 +4,10 @@ use crate::check::measure::Errors;
 use crate::model::Model;
 use crate::model::request::Units;
 use crate::output::parquet::sheet::{Cell, Kind, Sheet};
-use crate::output::table::{AXES, beam_forces, counts, point_kind, status, stress_components};
+use crate::output::table::{
+    AXES, OF_DIRECTIONS, OF_STABILITY, beam_forces, counts, dead_load, instability, point_kind, status,
+    stress_components,
+};
 use crate::result::increment::{Diagnostics, Increment};
 use parquet::errors::Result;
 use parquet::file::metadata::KeyValue;
@@ -64,6 +67,8 @@ impl PathTable {
                 }
                 counts(&Diagnostics::default()).iter().for_each(|(name, _)| add(name, Kind::Integer));
                 Errors::NAMES.iter().for_each(|name| add(&format!("measure.{name}"), Kind::Number));
+                let kinds = [Kind::Flag, Kind::Integer, Kind::Flag, Kind::Integer, Kind::Text, Kind::Text];
+                OF_DIRECTIONS.iter().chain(&OF_STABILITY).zip(kinds).for_each(|(name, kind)| add(name, kind));
             }
             Self::Nodes => {
                 add("node", Kind::Text);
@@ -194,6 +199,12 @@ fn push_increment<To: Write + Send>(
         Some(measure) => row.extend(measure.values().map(Cell::Number)),
         None => row.extend(Errors::NAMES.map(|_| Cell::Empty)),
     }
+    row.push(Cell::Flag(point.better_direction));
+    row.extend([Cell::Integer(point.unexplored_modes), Cell::Flag(point.degenerate)]);
+    let stability = increment.stability;
+    row.push(stability.and_then(|found| found.negative_eigenvalues).map_or(Cell::Empty, Cell::Integer));
+    row.push(stability.map_or(Cell::Empty, |found| Cell::Text(dead_load(found.dead_load))));
+    row.push(stability.and_then(|found| found.instability).map_or(Cell::Empty, |found| Cell::Text(instability(found))));
     sheet.push(&row)
 }
 

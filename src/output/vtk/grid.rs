@@ -2,7 +2,7 @@
 
 use crate::model::JobRequest;
 use crate::model::request::recorded_forces::{recorded_elements, recorded_supports};
-use crate::model::request::{Element, Record, SolidKind};
+use crate::model::request::{Element, Record, SolidKind, Units};
 use crate::output::vtk::arrays::{DataArray, text_array};
 use std::collections::HashMap;
 
@@ -46,6 +46,8 @@ pub struct Grid {
     pub(super) has_spring_forces: bool,
     pub(super) has_beam_forces: bool,
     pub(super) has_stresses: bool,
+    /// Labels of the model's units.
+    pub(super) units: Units,
     /// What the path is called, written to every file.
     pub(super) branch: String,
 }
@@ -106,6 +108,7 @@ impl Grid {
             has_beam_forces: has(|element| matches!(element, Element::Beam { .. })),
             has_stresses: has(|element| element.solid().is_some()),
             place_of_node,
+            units: model.units.clone().unwrap_or_default(),
             branch: branch.into(),
         }
     }

@@ -62,17 +62,28 @@ impl Grid {
             DataArray::numbers(name, 1, &[value]).write(to, Some(1))?;
         }
         DataArray::numbers("applied_force", 3, &in_space(&increment.applied_forces)).write(to, Some(1))?;
-        let flags = [i64::try_from(increment.index).unwrap_or(i64::MAX), i64::from(increment.point.bifurcation)];
-        for (name, value) in ["index", "bifurcation"].into_iter().zip(flags) {
+        let point = &increment.point;
+        let whole = |count: u64| i64::try_from(count).unwrap_or(i64::MAX);
+        for (name, value) in [
+            ("index", whole(increment.index)),
+            ("bifurcation", i64::from(point.bifurcation)),
+            ("better_direction", i64::from(point.better_direction)),
+            ("unexplored_modes", whole(point.unexplored_modes)),
+            ("degenerate", i64::from(point.degenerate)),
+        ] {
             DataArray::integers(name, std::iter::once(value)).write(to, Some(1))?;
         }
         for (name, text) in [
             ("stage", &*increment.stage),
-            ("point", point_kind(increment.point.kind)),
-            ("event", increment.point.event.as_deref().unwrap_or_default()),
+            ("point", point_kind(point.kind)),
+            ("event", point.event.as_deref().unwrap_or_default()),
             ("branch", &self.branch),
         ] {
             write_texts(to, name, &text_array(std::iter::once(text)), Some(1))?;
+        }
+        for (name, label) in [("length_unit", &self.units.length), ("force_unit", &self.units.force)] {
+            let Some(label) = label else { continue };
+            write_texts(to, name, &text_array(std::iter::once(label.as_str())), Some(1))?;
         }
         Ok(())
     }

@@ -6,6 +6,7 @@ stream that breaks off is resumed after the last increment received.
 
 from __future__ import annotations
 
+import difflib
 import http.client
 import json
 import logging
@@ -111,6 +112,9 @@ class Client:
         with each, or `"list"`, the first of each, the second of each and so on. `responses` are told of each path, such as
         `{"tip at limit": {"value": "tip.x", "at": "first_limit"}}`. `refine` adds so many runs at most, where the first
         response changes most between two values of the only parameter."""
+        near = difflib.get_close_matches("responses", [name for name in analysis if name != "record"], 1, 0.8)
+        if near:
+            raise TypeError(f"{near[0]!r} is no member of the analysis; did you mean 'responses'?")
         request = as_request(model, analysis)
         for pointer, own in replace.items():
             if isinstance(own, (str, bytes, Mapping)) or not hasattr(own, "__iter__"):

@@ -7,6 +7,7 @@ import copy
 import difflib
 import json
 import numbers
+import os
 import pathlib
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Union
 
@@ -366,14 +367,18 @@ class Model:
         material: Optional[str] = None,
         **more: Any,
     ) -> "Model":
-        """A truss of the lines of a mesh of meshio, or with `material` solids of its triangles, quadrilaterals, tetrahedra
-        and hexahedra, whichever have the largest dimension; a node for each point.
+        """A truss of the lines of a mesh of meshio, or of a file that meshio reads, or with `material` solids of its
+        triangles, quadrilaterals, tetrahedra and hexahedra, whichever have the largest dimension; a node for each point.
 
         `axial_stiffness` is one number, one for each line, or the name of the mesh's cell data. Without `dimension`
         points that all lie in the plane z = 0 give a model in the plane. Cells of other kinds are refused, unless they
         are to be ignored. Of solids `more` is what `solid` takes, such as `plane="strain"`; named sets of points and
         cells, gmsh's physical groups among them, become sets and surfaces, and points of no cell are left out.
         """
+        if isinstance(mesh, (str, os.PathLike)):
+            import meshio
+
+            mesh = meshio.read(mesh)
         if material is not None and axial_stiffness is None:
             return _solids_of(cls, mesh, dimension, prefix, material, more)
         if material is not None or axial_stiffness is None:

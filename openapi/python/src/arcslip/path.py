@@ -8,6 +8,7 @@ import pathlib
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union, overload
 
 from arcslip.model import SOLIDS, Model, as_request
+from arcslip.picture import unit_of
 
 Increment = Dict[str, Any]
 
@@ -120,10 +121,13 @@ class Path:
         energy = increment["energy"]
         row.update(external_work=energy["external_work"], strain_energy=energy["strain"], dissipated=energy["dissipated"])
         row["released"] = energy.get("released", 0.0)
-        for name, value in (increment.get("stability") or {}).items():
-            row[f"stability.{name}"] = value
         row.update(increment.get("diagnostics") or {})
         row.update((f"measure.{name}", value) for name, value in (increment.get("measure") or {}).items())
+        row["better_direction"] = point.get("better_direction", False)
+        row["unexplored_modes"] = point.get("unexplored_modes", 0)
+        row["degenerate"] = point.get("degenerate", False)
+        for name, value in (increment.get("stability") or {}).items():
+            row[f"stability.{name}"] = value
         return row
 
     def column(self, name: str) -> List[Any]:
@@ -151,10 +155,15 @@ class Path:
         return int(self.request["model"]["dimension"])
 
     def to_frame(self) -> Any:
-        """The path as a table of pandas, with a row for each increment and the columns of the CSV table."""
+        """The path as a table of pandas, with a row for each increment and the columns of the CSV table. Where the model
+        names its units, `frame.attrs["units"]` has the label of each column that has one."""
         import pandas
 
-        return pandas.DataFrame([self.row(increment) for increment in self.increments])
+        frame = pandas.DataFrame([self.row(increment) for increment in self.increments])
+        units = self.request["model"].get("units") or {}
+        labels = {name: unit_of(str(name), units.get("length"), units.get("force")) for name in frame.columns}
+        frame.attrs["units"] = {name: label for name, label in labels.items() if label}
+        return frame
 
     # Files ------------------------------------------------------------------------------------------------------------
 

@@ -4,9 +4,12 @@
 import { button, choice, element, fill, table } from "./dom.js";
 import { elementForces } from "./element-forces.js";
 import { elementWords } from "./quantities.js";
+import { vector } from "./geometry.js";
 import { headed, moment, unitsOf } from "./units.js";
 import { plainWords, short } from "./words.js";
 
+/** The part of the structure's size below which a gap is shown as 0. */
+const ROUND_OFF = 1e-13;
 /** Rows of a page. */
 const ROWS = 20;
 
@@ -14,13 +17,19 @@ const several = (values) => (values ? number(values.map(short).join(", ")) : num
 const number = (text) => element("span", { class: "number" }, text);
 const axesOf = ({ dimension }) => [..."xyz"].slice(0, dimension).join(", ");
 
+/** The largest coordinate of a model's nodes; 0 of a model whose nodes are those of a mesh. */
+const sizeOf = (model) => Object.values(model.nodes ?? {}).reduce((most, place) => Math.max(most, vector.length(place)), 0);
+
 /** What a table may be of: the words, what is shown of it, how many the model has, those of an increment, head and rows. */
 const KINDS = {
   contacts: {
     title: "Contacts", one: "contact",
     shown: [["", "all"], ["closed", "that touch"], ["stick", "that stick"], ["slip", "that slip"], ["free", "that are free"]],
     all: (model) => model.contacts?.length ?? 0,
-    of: (model, increment) => increment.contacts,
+    of: (model, increment) => {
+      const least = ROUND_OFF * sizeOf(model);
+      return increment.contacts.map((contact) => (Math.abs(contact.gap) < least ? { ...contact, gap: 0 } : contact));
+    },
     chosen: (contacts, wanted) => contacts.filter(({ status }) =>
       wanted === "" || status === wanted || (wanted === "closed" && status !== "free")),
     head: (model) => {

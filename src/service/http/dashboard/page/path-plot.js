@@ -3,6 +3,7 @@
 
 import { choice, element, fill } from "./dom.js";
 import { plotButtons } from "./downloads.js";
+import { placeLetters } from "./letter-places.js";
 import { axesControls, axisWords, isOnFirstAxis } from "./path-axes.js";
 import { Curve } from "./path-curve.js";
 import { curveNames, lineKey, namedPoints, pathLegend } from "./path-legend.js";
@@ -61,6 +62,9 @@ export class PathPlot {
     this.at = at;
     this.curves = this.made();
     const traces = this.curves.flatMap((curve) => [curve.base(), curve.points(this.curves.length <= LETTERED)]);
+    if (this.curves.length <= LETTERED) {
+      placeLetters(traces.filter((_, place) => place % OF_A_CURVE === 0), traces.filter((_, place) => place % OF_A_CURVE === 1), this.place);
+    }
     this.drawn = this.curves.map(({ path }) => path.index.length);
     this.drawnPoints = this.curves.map(({ path }) => named(path).length);
     this.isMarked = this.curves.map((curve) => this.hasMarkers(curve));

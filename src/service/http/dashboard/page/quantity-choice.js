@@ -5,7 +5,7 @@ import { unescaped } from "./quantities.js";
 import { columnOf } from "./quantity-groups.js";
 
 /** A group with at most this many quantities is listed; of a larger one the node or element is typed. */
-const LISTED = 300;
+const LISTED = 100;
 /** The number of names that are proposed for a typed text. */
 const PROPOSED = 40;
 /** Marks the value of an option that still needs a name. */

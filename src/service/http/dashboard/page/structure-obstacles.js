@@ -6,7 +6,7 @@ import { planeCurve } from "./plane-curve.js";
 import { fromSheet } from "./plot-style.js";
 import { components } from "./units.js";
 
-const { plus, unit, dot } = vector;
+const { plus, unit, dot, length } = vector;
 /** Corners of the polygon that represents a circle, and of each side of the part of an obstacle. */
 const ROUND = 48;
 const SIDE = 16;
@@ -15,6 +15,10 @@ const SIDE = 16;
 const BEYOND = 0.2;
 const DEEP = 0.07;
 const ALONE = 0.3;
+/** An obstacle for more feet than these is drawn as the ground that it is. */
+const ROWS_OF_FEET = 50;
+/** The part of the distance to the feet on another obstacle that a part of an obstacle may take. */
+const NOT_HALF = 0.4;
 /** The part of the extent within which an obstacle is in the picture. */
 const NEAR = 0.75;
 /** The length of the arrow of an obstacle's motion, as a part of the extent. */
@@ -58,13 +62,25 @@ export class ObstacleDrawing {
     return found.flatMap(({ node }) => [this.model.nodes[node], this.now.get(node)]).filter(Boolean);
   }
 
+  /** How far the part around these feet may go so that it does not cover that of a neighbour: each goes not quite half way. */
+  room(name, feet) {
+    if (feet.length > ROWS_OF_FEET) return Infinity;
+    const others = (this.model.contacts ?? []).filter(({ obstacle }) => obstacle !== name && obstacle in this.model.obstacles)
+      .map(({ node }) => this.model.nodes[node]);
+    let nearest = Infinity;
+    for (const foot of feet) {
+      for (const other of others) nearest = Math.min(nearest, length(plus(foot, other, -1)) || Infinity);
+    }
+    return NOT_HALF * nearest;
+  }
+
   /** The part near the feet; answers its middle. */
   part(name, obstacle) {
     const { extent, traces, model: { dimension } } = this;
     const feet = this.feet(name);
     const surface = surfaceOf(obstacle, feet[0] ?? extent.middle, this.moved.get(name) ?? []);
     const ranges = extent.stand(name, feet.map(surface.along));
-    const around = feet.length ? BEYOND : ALONE;
+    const around = feet.length ? Math.min(BEYOND, this.room(name, feet) / extent.size) : ALONE;
     const sides = (ranges.length ? ranges : surface.along(extent.middle).map((value) => [value, value]))
       .map(([low, high]) => [low - around * extent.size, high + around * extent.size]);
     const between = ([low, high], step) => low + ((high - low) * step) / SIDE;

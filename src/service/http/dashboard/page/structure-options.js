@@ -52,12 +52,12 @@ export class StructureOptions {
   }
 
   larger() {
-    const isLarge = () => this.place.parentElement.classList.toggle("large");
-    return button("Larger", (event) => {
-      event.target.setAttribute("aria-pressed", isLarge());
+    return button("Larger", ({ target }) => {
+      const isLarge = this.place.parentElement.classList.toggle("large");
+      target.textContent = isLarge ? "Smaller" : "Larger";
       // The picture follows the size of its place.
       dispatchEvent(new Event("resize"));
-    }, { id: "larger", "aria-pressed": "false" });
+    }, { id: "larger" });
   }
 
   /** The kind of diagram beside the members, null for none. */

@@ -1,7 +1,7 @@
-// A sweep: its first response, or the first limit load, against what is varied, with a line for each set of the other values, and its runs, whose
-// paths can be drawn over one another.
+// A sweep: a response, or the first limit load, against what is varied, with a line for each set of the other values, and its
+// runs, whose paths can be drawn over one another.
 
-import { button, element, fill, table } from "./dom.js";
+import { button, choice, element, fill, table } from "./dom.js";
 import { axis, colourOf } from "./plot-style.js";
 import { RowsView } from "./rows-view.js";
 import { addressOfJob, openJobs } from "./state.js";
@@ -21,6 +21,10 @@ const shown = (value) => (typeof value === "number" ? Number(short(value)) : val
 export class SweepView extends RowsView {
   constructor(section, told) {
     super(section, told, { kind: "sweep", place: "/v1/sweeps", title: "What the runs have", pause: AGAIN });
+    this.choices = element("div", { class: "choices" });
+    this.plotPlace.before(this.choices);
+    /** The drawn response, by its name; null for the first. */
+    this.response = null;
   }
 
   progressWords() {
@@ -32,8 +36,12 @@ export class SweepView extends RowsView {
     const rows = this.rows.toSorted((a, b) => a.run - b.run);
     const names = this.record.parameters.map(({ pointer }) => placeWords(pointer));
     const responses = Object.keys(this.record.responses ?? {});
-    // As in the picture of the command line: the first response, or the first limit load.
-    const [response] = responses;
+    // As in the picture of the command line: the first response, or the first limit load; another one on request.
+    const response = responses.includes(this.response) ? this.response : responses[0];
+    fill(this.choices, responses.length < 2 ? null : element("label", {}, "Draw ", choice({
+      id: "sweep-response", "data-key": "sweep-response",
+      onchange: (event) => { this.response = event.target.value; this.draw().catch((problem) => this.failed(problem)); },
+    }, responses.map((name) => [name, name]), response)));
     const drawnOf = (row) => (response === undefined ? row.first_limit?.load_factor ?? null : row.responses?.[response] ?? null);
     const isNumber = (row) => typeof drawnOf(row) === "number";
     const unitOf = (name) => this.record.response_units?.[name];
@@ -54,7 +62,7 @@ export class SweepView extends RowsView {
       line: { color: colourOf(place) }, marker: { size: 7 },
     }));
     await this.plot(traces, {
-      xaxis: { ...axis(names[0]), ...(isNumbers ? {} : { type: "category" }) }, yaxis: { ...axis(verbatim(told)), rangemode: "tozero" },
+      xaxis: { ...axis(names[0]), ...(isNumbers ? {} : { type: "category" }) }, yaxis: axis(verbatim(told)),
       showlegend: traces.length > 1,
     });
     const drawn = rows.filter(({ last_index: last }) => last !== null).slice(0, OVERLAID);
