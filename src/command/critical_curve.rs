@@ -1,4 +1,4 @@
-//! `arcslip continue`: follows a limit point in a parameter of the model.
+//! `arcslip continue`: follows a limit point, bifurcation point or contact change in a parameter of the model.
 
 use crate::command::options::{bounds, input};
 use crate::command::output::findings;
@@ -9,7 +9,7 @@ use crate::studies::critical_curves::{self, CurveFound};
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 
-/// Follow a limit point in a parameter of the model, such as its limit load over friction.
+/// Follow a limit point, bifurcation point or contact change in a parameter of the model: a limit load over friction.
 ///
 /// FILE is a job request with `"curve": {"parameter": POINTER, "range": [FROM, TO]}`, or one without where --parameter and
 /// --range are given.
@@ -29,7 +29,7 @@ pub struct Arguments {
     /// Follow the limit point of this number on the path, from 1.
     #[arg(long, value_name = "N", conflicts_with = "increment")]
     limit_point: Option<u64>,
-    /// Follow the limit point at the increment of this index.
+    /// Follow the limit point, smooth bifurcation point or contact change at the increment of this index.
     #[arg(long, value_name = "INDEX")]
     increment: Option<u64>,
     #[command(flatten)]

@@ -10,7 +10,7 @@
 //! | [`contact_changes`] | contact changes that are predicted, treated together, or reached in one straight step |
 //! | `increment` | one increment along a contact mode: stages, step control, trial, acceptance, classification |
 //! | `jump` | the motion from a state where the path cannot go on to the next state at rest |
-//! | `critical_curve` | limit points followed in a parameter |
+//! | `critical_curve` | limit points, bifurcation points and contact changes followed in a parameter |
 //! | [`path`] | the increments of a path one after the other, checkpoints, other branches |
 //! | [`penalty`] | the conventional method with penalties, for comparison |
 //! | [`method_dispatch`] | path tracing by the method that the analysis names |

@@ -13,13 +13,13 @@ use arcslip::studies::critical_curves::{self, CurveFound, CurveRow, CurveSummary
 use serde_json::{Value, json};
 use std::ops::ControlFlow;
 
-fn curve_of(request: &JobRequest, settings: &Value) -> Result<ParameterCurve, InputErrors> {
+pub fn curve_of(request: &JobRequest, settings: &Value) -> Result<ParameterCurve, InputErrors> {
     let mut document = serde_json::to_value(request).expect("JSON");
     document["curve"] = settings.clone();
     ParameterCurve::read(document.to_string().as_bytes())
 }
 
-fn followed(curve: &ParameterCurve) -> Result<CurveFound, InputErrors> {
+pub fn followed(curve: &ParameterCurve) -> Result<CurveFound, InputErrors> {
     let mut rows = Vec::new();
     let accept = &mut |row| {
         rows.push(row);
@@ -35,7 +35,7 @@ fn followed(curve: &ParameterCurve) -> Result<CurveFound, InputErrors> {
 }
 
 /// The summary of a curve that was followed to both ends of its range, or to where it is lost.
-fn ended(found: &CurveFound) -> &CurveSummary {
+pub fn ended(found: &CurveFound) -> &CurveSummary {
     let summary = found.summary.as_ref().expect("a summary");
     assert!(summary.complete, "{summary:?}");
     summary
@@ -47,6 +47,11 @@ fn is_limit(kind: PointKind) -> bool {
 
 /// The distance between a point of a curve and the nearest limit point of a path of its own, in load and displacements.
 fn off_path(curve: &ParameterCurve, row: &CurveRow) -> Option<f64> {
+    off_points_of_path(curve, row, &is_limit)
+}
+
+/// As [`off_path`], of points of other kinds.
+pub fn off_points_of_path(curve: &ParameterCurve, row: &CurveRow, is_meant: &dyn Fn(PointKind) -> bool) -> Option<f64> {
     let mut request = curve.request(row.value).expect("a model");
     request.analysis.events = Events::All;
     // The limit point may come later on it than on the first path.
@@ -58,8 +63,8 @@ fn off_path(curve: &ParameterCurve, row: &CurveRow) -> Option<f64> {
         let moved = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / scene.plan().displacement_scale;
         moved.max((one.load_factor - row.load_factor).abs() / load)
     };
-    let limits = Path::new(&scene, CancelFlag::default()).filter(|one| is_limit(one.point.kind));
-    limits.filter(|one| one.stage == row.stage).map(|one| distance(&one)).min_by(f64::total_cmp)
+    let points = Path::new(&scene, CancelFlag::default()).filter(|one| is_meant(one.point.kind));
+    points.filter(|one| one.stage == row.stage).map(|one| distance(&one)).min_by(f64::total_cmp)
 }
 
 /// The largest distance of ordinary points from paths of their own.

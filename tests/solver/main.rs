@@ -6,6 +6,7 @@ mod common;
 mod bad_input;
 mod bad_studies;
 mod beams;
+mod bifurcation_curves;
 mod bodies;
 mod bounds;
 mod by_program;

@@ -1,8 +1,12 @@
 //! A point on the branch of one contact mode at which a quantity is zero: the load rate at a smooth limit point, the event
-//! function of a contact where it changes.
+//! function of a contact where it changes. Also the point of the branch at which another branch crosses it, where the
+//! equations along the branch are singular.
 
+use crate::branching::bifurcation::locate::singular_point::SingularPoint;
 use crate::continuation::critical_curve::contact_history::PointGuess;
-use crate::continuation::critical_curve::tolerances::{ACCEPTED_CORRECTION, LARGEST_CORRECTION, POINT_ROUND_OFF};
+use crate::continuation::critical_curve::tolerances::{
+    ACCEPTED_CORRECTION, LARGEST_CORRECTION, POINT_ROUND_OFF, SAME_BRANCH, UNFOLDED,
+};
 use crate::mechanics::contact::Mode;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::closing_equation::HyperplaneEquation;
@@ -27,6 +31,10 @@ pub(super) struct BranchPoint {
     /// Modes with the directions of slip as they are there.
     pub modes: Vec<Mode>,
     pub residual: f64,
+    /// At a bifurcation point the motion that becomes free.
+    pub motion: Option<Rate>,
+    /// How far branches that met at a bifurcation point pass each other; 0 where they meet, and at other points.
+    pub unfolding: f64,
 }
 
 /// The branch of a mode, from the state in which the mode begins.
@@ -84,6 +92,35 @@ impl ModeBranch<'_> {
         (least <= ACCEPTED_CORRECTION * size).then_some(best)
     }
 
+    /// The point at which another branch crosses this one, near a guess. Where the branches pass each other it is the point
+    /// at which a small force would make them meet.
+    pub fn locate_bifurcation(&self, guess: &PointGuess, work: &mut Work) -> Option<BranchPoint> {
+        let system = ModeSystem::new(self.loading, self.modes, self.anchor);
+        let size = 1.0 + guess.state.distance(self.anchor);
+        let motion = guess.motion.clone().unwrap_or_else(|| any_motion(&guess.rate));
+        let reach = LARGEST_CORRECTION * size;
+        let near = SingularPoint::near(&system, guess.state.clone(), (&guess.rate, vec![motion]), (reach, &|_| true))?;
+        (work.newton_iterations, work.factorisations) =
+            (work.newton_iterations + near.iterations, work.factorisations + near.iterations);
+        let corrected = newton::judged(&system, near.state.clone(), self.force_scale);
+        let unfolding = near.unfolding.amax();
+        let rate = match near.continued(&guess.rate, SAME_BRANCH) {
+            Some(rate) => rate,
+            // Branches that pass each other have no direction in common.
+            None if unfolding > UNFOLDED => guess.rate.clone(),
+            None => return None,
+        };
+        let motion = near.bordering.right.last().map(|right| near.bordering.rate(right))?;
+        Some(BranchPoint {
+            rate,
+            residual: corrected.residual,
+            modes: corrected.modes,
+            state: corrected.state,
+            motion: motion.normalised(),
+            unfolding,
+        })
+    }
+
     /// The point of the branch in a plane through a state, with the value of a quantity there.
     pub fn in_plane(
         &self,
@@ -125,7 +162,14 @@ impl ModeBranch<'_> {
         let guess = system.iterate(guess.clone());
         let corrected = newton::correct_from(&system, guess, &plane, self.force_scale, &mut None, work).ok()?;
         let rate = self.tangent(&system, &corrected, plane.rate, work)?;
-        Some(BranchPoint { rate, residual: corrected.residual, modes: corrected.modes, state: corrected.state })
+        Some(BranchPoint {
+            rate,
+            residual: corrected.residual,
+            modes: corrected.modes,
+            state: corrected.state,
+            motion: None,
+            unfolding: 0.0,
+        })
     }
 
     fn tangent(&self, system: &ModeSystem<'_>, corrected: &Corrected, towards: &Rate, work: &mut Work) -> Option<Rate> {
@@ -136,4 +180,13 @@ impl ModeBranch<'_> {
         }
         Some(rate)
     }
+}
+
+/// A motion with a component in every direction, the same in every run, for the first search.
+fn any_motion(like: &Rate) -> Rate {
+    let mut motion = like.clone();
+    motion.scale(0.0);
+    let components = motion.displacement.iter_mut().enumerate();
+    components.for_each(|(freedom, value)| *value = 0.5 + ((freedom * 7) % 13) as f64 / 13.0);
+    motion
 }

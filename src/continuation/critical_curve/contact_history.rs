@@ -16,6 +16,37 @@ use crate::mechanics::problem::state::{Rate, State};
 use crate::result::increment::PointKind;
 use crate::step::event_functions::{self, EventFunction};
 
+/// What kind of points a curve is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum CriticalKind {
+    /// Smooth and nonsmooth limit points.
+    Limit,
+    /// Smooth bifurcation points.
+    Bifurcation,
+    /// Points at which a contact changes, whether the load turns there or not.
+    ContactChange,
+}
+
+impl CriticalKind {
+    /// The kind of a point of a path; `None` of a point that cannot be followed.
+    pub fn of(point: &PassedPoint) -> Option<Self> {
+        match (point.kind, point.event) {
+            (PointKind::SmoothLimit | PointKind::NonsmoothLimit, _) => Some(Self::Limit),
+            // Where a stage ends at a limit point its kind stays.
+            (_, Some(EventFunction::LoadRate { .. })) => Some(Self::Limit),
+            (PointKind::SmoothBifurcation, _) => Some(Self::Bifurcation),
+            (PointKind::ContactChange, _) => Some(Self::ContactChange),
+            _ => None,
+        }
+    }
+
+    /// Whether a point of a path may be one of a curve of this kind.
+    pub fn has(self, point: &PassedPoint) -> bool {
+        let is_turning = self == Self::ContactChange && point.kind == PointKind::NonsmoothLimit;
+        is_turning || Self::of(point) == Some(self)
+    }
+}
+
 /// Why a critical point cannot be followed in a parameter.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum HistoryRefusal {
@@ -67,6 +98,8 @@ pub(super) enum PointClosing {
     StageEnd(usize),
     /// Nothing: the stage begins here.
     StageBegin,
+    /// The equations along the branch are singular: another branch crosses it.
+    Bifurcation,
 }
 
 /// The state of a point and the directions of the path there, where Newton's method starts.
@@ -77,6 +110,8 @@ pub(super) struct PointGuess {
     pub from: State,
     pub rate: Rate,
     pub leaving_rate: Option<Rate>,
+    /// At a bifurcation point the motion that becomes free, where it is known.
+    pub motion: Option<Rate>,
 }
 
 /// The points by which a path comes to a critical point, the last of them.
@@ -111,7 +146,10 @@ impl ContactHistory {
             if place < last && !changes && !point.stage_ends {
                 continue;
             }
-            let closing = closing(scene, point)?;
+            let closing = match CriticalKind::of(point) {
+                Some(CriticalKind::Bifurcation) if place == last => PointClosing::Bifurcation,
+                _ => closing(scene, point)?,
+            };
             let touching = if changes { touching(scene, point, &reached) } else { Vec::new() };
             points.push(HistoryPoint {
                 stage: point.stage,
@@ -127,6 +165,7 @@ impl ContactHistory {
                 from: point.state.clone(),
                 rate: point.rate.clone(),
                 leaving_rate: point.leaving_rate.clone().filter(|_| changes),
+                motion: None,
             });
         }
         let critical = &passed[last];

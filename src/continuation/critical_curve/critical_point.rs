@@ -1,6 +1,6 @@
 //! A point of a curve of critical points in the user's units and names.
 
-use crate::continuation::critical_curve::contact_history::{ContactHistory, HistoryPoint, PointClosing};
+use crate::continuation::critical_curve::contact_history::{ContactHistory, CriticalKind, HistoryPoint, PointClosing};
 use crate::continuation::critical_curve::solved_history::{ConditionSide, PathCondition, SolvedHistory, scene_loading};
 use crate::continuation::path_state::resumable_state::constant_load;
 use crate::continuation::path_state::row_conversion::{self, RowSource};
@@ -92,11 +92,22 @@ pub(crate) fn in_words(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
-/// The kind of a limit point in words.
+/// The kind of a critical point in words.
 pub(super) fn kind_name(kind: PointKind) -> &'static str {
     match kind {
         PointKind::NonsmoothLimit => "nonsmooth limit point",
+        PointKind::SmoothBifurcation => "bifurcation point",
+        PointKind::ContactChange => "contact change",
         _ => "smooth limit point",
+    }
+}
+
+/// What a curve is made of, in words.
+pub(super) fn plural_name(kind: CriticalKind) -> &'static str {
+    match kind {
+        CriticalKind::Limit => "limit points",
+        CriticalKind::Bifurcation => "bifurcation points",
+        CriticalKind::ContactChange => "contact changes",
     }
 }
 
@@ -133,7 +144,8 @@ fn place_name(history: &ContactHistory, place: usize) -> String {
 pub(super) fn describe(scene: &Scene, history: &ContactHistory, condition: &PathCondition) -> String {
     let kind = kind_name(history.kind);
     let point = &history.points[condition.point];
-    let what = what_happens(scene, condition, condition.point + 1 == history.points.len());
+    let critical = (condition.point + 1 == history.points.len()).then_some(history.kind);
+    let what = what_happens(scene, condition, critical);
     if condition.point + 1 == history.points.len() {
         return format!("{what} at the {kind}");
     }
@@ -144,7 +156,8 @@ pub(super) fn describe(scene: &Scene, history: &ContactHistory, condition: &Path
     format!("{what} at change {count} of the {all} by which the path comes to the {kind}")
 }
 
-fn what_happens(scene: &Scene, condition: &PathCondition, is_critical: bool) -> String {
+/// `critical`: the kind of the critical point, where the condition is of it.
+fn what_happens(scene: &Scene, condition: &PathCondition, critical: Option<PointKind>) -> String {
     let pair = |contact: usize| {
         let (node, obstacle) = &scene.contact_names[contact];
         (node.to_string(), obstacle.to_string())
@@ -178,11 +191,18 @@ fn what_happens(scene: &Scene, condition: &PathCondition, is_critical: bool) -> 
         | EventFunction::Slide { corner }
         | EventFunction::Hold { corner }
         | EventFunction::Return { corner } => format!("{} begins to slip in its corner", of_corner(corner)),
-        EventFunction::LoadRate { .. } if !is_critical => "the load rate changes its sign".to_owned(),
-        EventFunction::LoadRate { .. } if condition.about == ConditionSide::Leaving => {
-            "the load no longer turns".to_owned()
-        }
-        EventFunction::LoadRate { .. } => "the load turns before the contact changes".to_owned(),
+        EventFunction::LoadRate { .. } => of_load_rate(critical, condition.about).to_owned(),
         EventFunction::End(_) => "the stage ends".to_owned(),
+    }
+}
+
+/// What happens where the load rate is zero at a critical point of this kind, or at a change before it.
+fn of_load_rate(critical: Option<PointKind>, about: ConditionSide) -> &'static str {
+    match (critical, about) {
+        (None, _) => "the load rate changes its sign",
+        (Some(PointKind::SmoothBifurcation), _) => "the load turns",
+        (Some(PointKind::ContactChange), ConditionSide::Leaving) => "the load turns from here on",
+        (Some(_), ConditionSide::Leaving) => "the load no longer turns",
+        (Some(_), _) => "the load turns before the contact changes",
     }
 }

@@ -9,7 +9,7 @@ use crate::continuation::critical_curve::solved_history::{PathCondition, SolvedH
 use crate::continuation::critical_curve::taken_directions::TakenDirections;
 use crate::continuation::critical_curve::tolerances::{
     FIRST_DEVIATION, FOUND_ZERO, LARGEST_DEVIATION, MODEL_STEP, PASSED, PAST_CHANGE, PREFERENCE_WIDTH, SAME_POINT,
-    SHORTEST_CHORD, SHORTEST_STEP, STEP_GROWTH, STEP_ROUND_OFF, TURNING_STEP, UNLOCATED_STEPS,
+    SHORTEST_CHORD, SHORTEST_STEP, STEP_GROWTH, STEP_ROUND_OFF, TURNING_STEP, UNFOLDED, UNLOCATED_STEPS,
 };
 use crate::continuation::critical_curve::traced_history::{self, CurveRefusal, CurveStart};
 use crate::continuation::critical_curve::traced_paths::TracedPaths;
@@ -116,7 +116,7 @@ impl<'a> CriticalCurve<'a> {
     pub fn follow(mut self, start: CurveStart, accept: AcceptPoint<'_>) -> Result<CurveReport, CurveFailure> {
         let scene = (self.family)(self.range.start).map_err(CurveFailure::Model)?;
         let first = traced_history::start(&scene, start, &self.cancel)?;
-        let mut paths = TracedPaths::new(self.family, self.cancel.clone(), first.index);
+        let mut paths = TracedPaths::new(self.family, self.cancel.clone(), first.kind, first.index);
         let here = SolvedHistory::of(&first.history, &scene, self.range.start, &first.guesses, &mut self.work);
         let begin = CurvePosition { history: first.history, here: here.ok_or(CurveRefusal::NotSolved)?, before: None };
         let note = PointNote { event: None, codimension_two: false, from_path: true };
@@ -215,6 +215,11 @@ impl<'a> CriticalCurve<'a> {
             let slack = self.slack(&walk.place);
             return self.go_on_past(walk, (&from, slack), paths, accept, lost);
         };
+        if solved.unfolding > UNFOLDED {
+            let why =
+                "the bifurcation point is one of this value alone: past it the branches no longer meet".to_owned();
+            return ControlFlow::Break(Stopped::Ended(DirectionEnd::Lost { value: here, why }));
+        }
         let broken = solved.ended_since(&walk.place.here);
         if broken.is_empty() {
             if let Some(other) = self.other_direction(walk, &solved, &scene) {
@@ -399,7 +404,7 @@ impl<'a> CriticalCurve<'a> {
         accept: AcceptPoint<'_>,
         why: impl FnOnce() -> String,
     ) -> ControlFlow<Stopped> {
-        let mut has_limits = false;
+        let mut has_any = false;
         let mut tried = change.parameter;
         for part in PAST_CHANGE {
             let value = stepped(change.parameter, walk.sense * part * self.range.step, walk.target(&self.range));
@@ -417,9 +422,11 @@ impl<'a> CriticalCurve<'a> {
                 let note = PointNote { event: None, codimension_two: false, from_path: true };
                 return flow(self.emit(&scene, &walk.place, note, accept));
             }
-            (has_limits, tried) = (found.has_limits, value);
+            (has_any, tried) = (found.has_any, value);
         }
-        let what = if has_limits { "has limit points, and none that comes from there" } else { "has no limit point" };
+        let kind = critical_point::plural_name(paths.kind);
+        let what =
+            if has_any { format!("has {kind}, and none that comes from there") } else { format!("has no {kind}") };
         let why = format!("{}; the path at {} {what}", why(), critical_point::in_words(tried));
         ControlFlow::Break(Stopped::Ended(DirectionEnd::Lost { value: change.parameter, why }))
     }

@@ -16,7 +16,7 @@ const MOST_KEPT: usize = 256;
 
 /// A point of the curve that may be compared with a path.
 #[derive(Clone)]
-pub(super) struct PassedLimit {
+pub(super) struct PassedCritical {
     pub parameter: f64,
     pub stage: usize,
     pub state: State,
@@ -28,7 +28,7 @@ pub(super) struct PassedLimit {
 
 /// The last points of a direction.
 pub(super) struct LastPoints {
-    points: VecDeque<PassedLimit>,
+    points: VecDeque<PassedCritical>,
     /// The last value at which the curve changed.
     change: Option<f64>,
     /// Points closer to a change than this are not compared.
@@ -59,7 +59,7 @@ impl LastPoints {
         let here = &position.here;
         let stage = position.history.points.last().map_or(0, |point| point.stage);
         let (state, scales) = (here.critical().clone(), here.scales.clone());
-        self.points.push_back(PassedLimit { parameter, stage, state, scales, is_clear });
+        self.points.push_back(PassedCritical { parameter, stage, state, scales, is_clear });
     }
 
     /// The end of the direction, after one of its last points has been compared with a path of its own. Where they differ, the
@@ -69,8 +69,8 @@ impl LastPoints {
             DirectionEnd::Lost { value, .. } | DirectionEnd::Model { value, .. } => Some(*value),
             _ => None,
         };
-        let is_apart = |one: &&PassedLimit| lost.is_none_or(|lost| (one.parameter - lost).abs() >= self.close);
-        let clear: Vec<&PassedLimit> = self.points.iter().filter(|one| one.is_clear).filter(is_apart).collect();
+        let is_apart = |one: &&PassedCritical| lost.is_none_or(|lost| (one.parameter - lost).abs() >= self.close);
+        let clear: Vec<&PassedCritical> = self.points.iter().filter(|one| one.is_clear).filter(is_apart).collect();
         let Some(last) = clear.last() else { return end };
         if paths.has(last) {
             return end;

@@ -1,4 +1,4 @@
-//! Curves of critical points: the limit points of a structure as a parameter of it varies.
+//! Curves of critical points: limit points, bifurcation points and contact changes of a structure as a parameter varies.
 //!
 //! Such a curve is called a fold line (A. Eriksson, *Fold lines for sensitivity analyses in structural instability*, Comput.
 //! Methods Appl. Mech. Eng. 114 (1994) 77). There the extended system is equilibrium with the condition that its tangent is
@@ -11,15 +11,16 @@
 //! ```
 //!
 //! with the equilibrium `R_k` of the contact mode that begins at `x_{k-1}`, and the event function `e_k` that is zero at its
-//! end; `e_n` is the load rate, or the event function of the contact with which the load turns. The system is block
-//! triangular, and is solved block by block (`solved_history`).
+//! end; `e_n` is the load rate, or the event function of the contact with which the load turns, or that of any contact that
+//! changes; at a bifurcation point it is the test functions of the bordered equations. The system is block triangular, and is solved block by block (`solved_history`).
 //!
 //! Along the curve the conditions under which a path passes through these points are watched. Where one of them ends, the
 //! critical point changes its kind, or the path to it its changes of contact: a point of codimension two, which is located
 //! in the parameter. Past it the path itself is traced once more, and its critical point at the same place goes on with the
 //! curve; where there is none, the curve ends, and this is said. The selection rule is watched in the same way: where the path
-//! comes to prefer another direction at one of the points, that is located and told (`taken_directions`). Where two limit points meet, the curve turns back in the
-//! parameter and goes on along the other one (`turning_point`). At each end one of the last points is compared with a path.
+//! comes to prefer another direction at one of the points, that is located and told (`taken_directions`). Where two limit
+//! points meet, the curve turns back in the parameter and goes on along the other one (`turning_point`). At each end
+//! one of the last points is compared with a path.
 //!
 //! | file | contents |
 //! |---|---|

@@ -63,6 +63,8 @@ pub(super) struct SolvedHistory {
     pub residual: f64,
     /// The value of the event function at the critical point; 0 unless a plane stood in its place.
     pub off_event: f64,
+    /// How far branches that met at the critical point pass each other (dimensionless); 0 where they meet.
+    pub unfolding: f64,
     /// Conditions with their values, relative to the scales of the quantities.
     pub conditions: Vec<(PathCondition, f64)>,
     pub scales: StateScales,
@@ -162,7 +164,7 @@ impl SolvedHistory {
         let mut anchor = State::at_rest(&scene.structure, contacts);
         let (mut reached, mut held) = (Vec::new(), constant_load(scene, &[]));
         let (mut points, mut conditions) = (Vec::with_capacity(history.points.len()), Vec::new());
-        let (mut modes, mut residual, mut off_event) = (Vec::new(), 0.0, 0.0);
+        let (mut modes, mut residual, mut off_event, mut unfolding) = (Vec::new(), 0.0, 0.0, 0.0);
         for (place, (point, guess)) in history.points.iter().zip(guesses).enumerate() {
             if reached.len() < point.stage {
                 while reached.len() < point.stage {
@@ -184,25 +186,28 @@ impl SolvedHistory {
                     from: anchor.clone(),
                     rate: leaving.clone(),
                     leaving_rate: Some(leaving),
+                    motion: None,
                 });
                 continue;
             }
             let closing = match point.closing {
                 PointClosing::StageBegin => return None,
-                PointClosing::Event(event) => event,
-                PointClosing::StageEnd(place) => EventFunction::End(*stage_ends.get(place)?),
+                PointClosing::Event(event) => Some(event),
+                PointClosing::StageEnd(place) => Some(EventFunction::End(*stage_ends.get(place)?)),
+                PointClosing::Bifurcation => None,
             };
             let branch = ModeBranch { loading, modes: &point.modes, anchor: &anchor, force_scale: history.force_scale };
             let is_last = place + 1 == history.points.len();
-            let mut found = match plane.filter(|_| is_last) {
-                Some(plane) => {
+            let mut found = match (closing, plane.filter(|_| is_last)) {
+                (Some(closing), Some(plane)) => {
                     let (found, value) = branch.in_plane(closing, guess, plane, work)?;
                     off_event = value;
                     found
                 }
-                None => branch.locate(closing, guess, work)?,
+                (Some(closing), None) => branch.locate(closing, guess, work)?,
+                (None, _) => branch.locate_bifurcation(guess, work)?,
             };
-            if let EventFunction::End(end) = closing {
+            if let Some(EventFunction::End(end)) = closing {
                 end.make_exact(&mut found.state);
             }
             let at = Solved { place, point, loading, force_scale: history.force_scale };
@@ -211,21 +216,22 @@ impl SolvedHistory {
                 Some(towards) if point.changes => Some(at.leave(&found.state, towards, &mut conditions, work)?),
                 _ => None,
             };
-            let is_smooth = matches!(closing, EventFunction::LoadRate { .. });
+            let is_smooth = matches!(closing, Some(EventFunction::LoadRate { .. }));
             at.turns(Some(&found.rate).filter(|_| !is_smooth), leaving.as_ref(), &mut conditions);
-            (modes, residual) = (found.modes, found.residual);
+            (modes, residual, unfolding) = (found.modes, found.residual, found.unfolding);
             anchor = found.state.clone();
             points.push(PointGuess {
                 from: anchor.clone(),
                 state: found.state,
                 rate: found.rate,
                 leaving_rate: leaving,
+                motion: found.motion,
             });
             let of_mode = anchor.reactions.iter_mut().zip(&point.leaving_modes);
             of_mode.filter(|(_, mode)| **mode == Mode::Free).for_each(|(reaction, _)| *reaction = Reaction::default());
         }
         let scales = StateScales::of(scene);
-        Some(Self { parameter, points, modes, reached, residual, off_event, conditions, scales })
+        Some(Self { parameter, points, modes, reached, residual, off_event, unfolding, conditions, scales })
     }
 }
 
@@ -247,13 +253,13 @@ impl Solved<'_> {
         &self,
         state: &State,
         rate: &Rate,
-        closing: EventFunction,
+        closing: Option<EventFunction>,
         stage_ends: &[End],
         conditions: &mut Vec<(PathCondition, f64)>,
     ) {
         let modes = &self.point.modes;
         for function in event_functions::of_mode(self.loading, modes, state, rate) {
-            if function != closing {
+            if Some(function) != closing {
                 let value = function.value(self.loading, modes, state, rate);
                 let scaled = value / function.scale(self.loading, state, self.force_scale);
                 conditions.push((self.condition(ConditionSide::Arriving, function), scaled));
@@ -261,7 +267,7 @@ impl Solved<'_> {
         }
         for (place, end) in stage_ends.iter().enumerate() {
             let function = EventFunction::End(*end);
-            if function != closing {
+            if Some(function) != closing {
                 let value = function.value(self.loading, modes, state, rate);
                 conditions.push((self.condition(ConditionSide::StageEnd(place), function), value));
             }

@@ -71,6 +71,14 @@ pub(crate) const CLEAR_OF_CHANGE: f64 = 0.2;
 /// some 1e-10; another limit point is rarely as near.
 pub(crate) const ON_PATH: f64 = 1e-6;
 
+/// Cosine of the largest angle between the directions of a branch at bifurcation points of two neighbouring values of the
+/// parameter: another branch through the point is usually farther away.
+pub(crate) const SAME_BRANCH: f64 = 0.5;
+
+/// Branches pass each other where the unfolding of their bifurcation point is more than this, a dimensionless displacement.
+/// Where they meet it is round-off, some 1e-14; past the symmetry that made them meet it grows with the parameter.
+pub(crate) const UNFOLDED: f64 = 1e-10;
+
 /// Points of two histories coincide within this (dimensionless displacement and load).
 pub(crate) const SAME_POINT: f64 = 1e-7;
 

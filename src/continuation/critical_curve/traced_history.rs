@@ -1,6 +1,6 @@
-//! The history of a path that is traced for it.
+//! The history of a path that is traced for it, to a point that can be followed in a parameter.
 
-use crate::continuation::critical_curve::contact_history::{ContactHistory, HistoryRefusal, PointGuess};
+use crate::continuation::critical_curve::contact_history::{ContactHistory, CriticalKind, HistoryRefusal, PointGuess};
 use crate::continuation::critical_curve::tolerances::ASKED_POINT;
 use crate::continuation::path::iterator::Path;
 use crate::continuation::path_state::passed_points::PassedPoint;
@@ -8,8 +8,6 @@ use crate::continuation::scene::Scene;
 use crate::mechanics::problem::state::State;
 use crate::model::request::Events;
 use crate::resources::cancel::CancelFlag;
-use crate::result::increment::PointKind;
-use crate::step::event_functions::EventFunction;
 
 /// The critical point at which a curve starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,14 +39,20 @@ pub enum CurveRefusal {
         /// Why the path ends, in words.
         why: String,
     },
-    /// The increment is no limit point.
-    #[error("increment {0} is no limit point; take one whose `point.kind` is `smooth_limit` or `nonsmooth_limit`")]
+    /// Nothing that can be followed happens at the increment.
+    #[error(
+        "increment {0} cannot be followed in a parameter; take one whose `point.kind` is `smooth_limit`, \
+         `nonsmooth_limit`, `smooth_bifurcation` or `contact_change`"
+    )]
     NotCritical(u64),
     /// The point is not found where all contact changes are resolved.
-    #[error("the limit point is not found on a path with all contact changes resolved")]
+    #[error("the point is not found on a path with all contact changes resolved")]
     NotResolved,
     /// The point is not found by its own equations.
-    #[error("the limit point is not found by the equations of its history")]
+    #[error(
+        "the point is not found by the equations of its history; a bifurcation point must be simple: two branches meet \
+         there, and no contact touches without a force"
+    )]
     NotSolved,
     /// The history of the point.
     #[error(transparent)]
@@ -56,13 +60,6 @@ pub enum CurveRefusal {
     /// Cancelled.
     #[error("cancelled")]
     Cancelled,
-}
-
-/// Whether a point of a path is a limit point.
-fn is_limit(point: &PassedPoint) -> bool {
-    matches!(point.kind, PointKind::SmoothLimit | PointKind::NonsmoothLimit)
-        // Where a stage ends at a limit point its kind stays.
-        || matches!(point.event, Some(EventFunction::LoadRate { .. }))
 }
 
 fn is_joined(point: &PassedPoint) -> bool {
@@ -73,6 +70,7 @@ fn is_joined(point: &PassedPoint) -> bool {
 pub(super) struct FirstPoint {
     pub history: ContactHistory,
     pub guesses: Vec<PointGuess>,
+    pub kind: CriticalKind,
     /// Index of its increment.
     pub index: u64,
 }
@@ -82,43 +80,48 @@ pub(super) struct FirstPoint {
 /// # Errors
 /// See [`CurveRefusal`].
 pub(super) fn start(scene: &Scene, start: CurveStart, cancel: &CancelFlag) -> Result<FirstPoint, CurveRefusal> {
-    let passed = up_to(scene, start, cancel)?;
+    let (passed, kind) = up_to(scene, start, cancel)?;
     let asked = &passed[passed.len() - 1];
     if !passed.iter().any(is_joined) {
-        return first(scene, &passed);
+        return first(scene, &passed, kind);
     }
-    let limits = LimitsOnPath::near(scene, &asked.state, asked.stage, 4 * asked.index + 100, cancel);
-    let found = limits.nearest_first().next().ok_or(CurveRefusal::NotResolved)?;
+    let near = (&asked.state, asked.stage);
+    let points = PointsOnPath::near(scene, near, kind, 4 * asked.index + 100, cancel);
+    let found = points.nearest_first().next().ok_or(CurveRefusal::NotResolved)?;
     let off = found[found.len() - 1].state.distance(&asked.state);
-    if off > ASKED_POINT * (1.0 + asked.state.size()) { Err(CurveRefusal::NotResolved) } else { first(scene, found) }
+    let is_other = off > ASKED_POINT * (1.0 + asked.state.size());
+    if is_other { Err(CurveRefusal::NotResolved) } else { first(scene, found, kind) }
 }
 
-fn first(scene: &Scene, passed: &[PassedPoint]) -> Result<FirstPoint, CurveRefusal> {
+fn first(scene: &Scene, passed: &[PassedPoint], kind: CriticalKind) -> Result<FirstPoint, CurveRefusal> {
     let (history, guesses) = ContactHistory::of(scene, passed)?;
-    Ok(FirstPoint { history, guesses, index: passed[passed.len() - 1].index })
+    Ok(FirstPoint { history, guesses, kind, index: passed[passed.len() - 1].index })
 }
 
 /// The points of the path as it was asked for, up to the critical point.
-fn up_to(scene: &Scene, start: CurveStart, cancel: &CancelFlag) -> Result<Vec<PassedPoint>, CurveRefusal> {
+fn up_to(
+    scene: &Scene,
+    start: CurveStart,
+    cancel: &CancelFlag,
+) -> Result<(Vec<PassedPoint>, CriticalKind), CurveRefusal> {
     let mut path = Path::new(scene, cancel.clone());
     path.keep_passed_points();
     let mut limits = 0;
     let mut seen = 0;
     while let Some(increment) = path.next() {
         let passed = path.passed_points();
-        let fresh = passed[seen..].last().filter(|point| is_limit(point));
+        let fresh = passed[seen..].last().and_then(CriticalKind::of);
         seen = passed.len();
-        limits += u64::from(fresh.is_some());
-        match start {
-            CurveStart::LimitPoint(asked) if fresh.is_some() && limits == asked => return Ok(path.into_passed_points()),
-            CurveStart::Increment(index) if increment.index == index => {
-                return if fresh.is_some() {
-                    Ok(path.into_passed_points())
-                } else {
-                    Err(CurveRefusal::NotCritical(index))
-                };
+        limits += u64::from(fresh == Some(CriticalKind::Limit));
+        match (start, fresh) {
+            (CurveStart::LimitPoint(asked), Some(kind @ CriticalKind::Limit)) if limits == asked => {
+                return Ok((path.into_passed_points(), kind));
             }
-            CurveStart::LimitPoint(_) | CurveStart::Increment(_) => {}
+            (CurveStart::Increment(index), fresh) if increment.index == index => {
+                let kind = fresh.ok_or(CurveRefusal::NotCritical(index))?;
+                return Ok((path.into_passed_points(), kind));
+            }
+            _ => {}
         }
     }
     let why = path.report().map_or_else(String::new, |report| report.sentence);
@@ -129,16 +132,22 @@ fn up_to(scene: &Scene, start: CurveStart, cancel: &CancelFlag) -> Result<Vec<Pa
     })
 }
 
-/// The limit points of a stage on a path with all contact changes resolved.
-pub(super) struct LimitsOnPath {
+/// The points of one kind in a stage on a path with all contact changes resolved.
+pub(super) struct PointsOnPath {
     passed: Vec<PassedPoint>,
-    /// Places of the limit points among them, the one nearest to a state first.
-    limits: Vec<usize>,
+    /// Places of those points among them, the one nearest to a state first.
+    found: Vec<usize>,
 }
 
-impl LimitsOnPath {
+impl PointsOnPath {
     /// Traces the first `most` increments of a path.
-    pub fn near(scene: &Scene, expected: &State, stage: usize, most: u64, cancel: &CancelFlag) -> Self {
+    pub fn near(
+        scene: &Scene,
+        (expected, stage): (&State, usize),
+        kind: CriticalKind,
+        most: u64,
+        cancel: &CancelFlag,
+    ) -> Self {
         let mut scene = scene.clone();
         scene.analysis.events = Events::All;
         scene.analysis.max_increments = scene.analysis.max_increments.max(most);
@@ -146,15 +155,15 @@ impl LimitsOnPath {
         path.keep_passed_points();
         while path.next().is_some_and(|increment| increment.index < most) {}
         let passed = path.into_passed_points();
-        let limits = passed.iter().enumerate().filter(|(_, point)| point.stage == stage && is_limit(point));
-        let mut limits: Vec<(f64, usize)> =
-            limits.map(|(place, point)| (point.state.distance(expected), place)).collect();
-        limits.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Self { passed, limits: limits.into_iter().map(|(_, place)| place).collect() }
+        let found = passed.iter().enumerate().filter(|(_, point)| point.stage == stage && kind.has(point));
+        let mut found: Vec<(f64, usize)> =
+            found.map(|(place, point)| (point.state.distance(expected), place)).collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Self { passed, found: found.into_iter().map(|(_, place)| place).collect() }
     }
 
-    /// The points of the path up to each limit point, the nearest one first.
+    /// The points of the path up to each of those points, the nearest one first.
     pub fn nearest_first(&self) -> impl Iterator<Item = &[PassedPoint]> {
-        self.limits.iter().map(|place| &self.passed[..=*place])
+        self.found.iter().map(|place| &self.passed[..=*place])
     }
 }

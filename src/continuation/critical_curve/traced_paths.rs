@@ -1,27 +1,29 @@
 //! The paths that are traced for a curve: past a change to go on from, and at its ends to compare its points with.
 
-use crate::continuation::critical_curve::contact_history::ContactHistory;
+use crate::continuation::critical_curve::contact_history::{ContactHistory, CriticalKind};
 use crate::continuation::critical_curve::curve_position::{CurvePosition, SceneFamily, extrapolated};
-use crate::continuation::critical_curve::last_points::PassedLimit;
+use crate::continuation::critical_curve::last_points::PassedCritical;
 use crate::continuation::critical_curve::solved_history::SolvedHistory;
 use crate::continuation::critical_curve::tolerances::{ON_PATH, SAME_POINT};
-use crate::continuation::critical_curve::traced_history::LimitsOnPath;
+use crate::continuation::critical_curve::traced_history::PointsOnPath;
 use crate::continuation::path_state::passed_points::PassedPoint;
 use crate::continuation::scene::Scene;
 use crate::resources::cancel::CancelFlag;
 use crate::step::corrector::cost_counters::Work;
 
-/// Paths are at most this many times as long as the longest one so far up to the limit point, in increments ...
+/// Paths are at most this many times as long as the longest one so far up to the critical point, in increments ...
 const MOST_PATH_FACTOR: u64 = 8;
 /// ... and may be this long in any case.
 const LEAST_PATH: u64 = 1_600;
-/// Limit points of a path that are tried, those nearest to the curve.
+/// Points of a path that are tried, those nearest to the curve.
 const MOST_CANDIDATES: usize = 4;
 
 /// The paths of a curve.
 pub(super) struct TracedPaths<'a> {
     pub family: SceneFamily<'a>,
     pub cancel: CancelFlag,
+    /// What the curve is made of.
+    pub kind: CriticalKind,
     /// How many there have been.
     pub count: u64,
     /// Most increments of the next one.
@@ -30,19 +32,19 @@ pub(super) struct TracedPaths<'a> {
 
 /// What a path has past a change.
 pub(super) struct PathPastChange {
-    /// The curve at the limit point that continues it, if there is one.
+    /// The curve at the point that continues it, if there is one.
     pub position: Option<CurvePosition>,
-    /// Whether the path has limit points in this stage.
-    pub has_limits: bool,
+    /// Whether the path has points of that kind in this stage.
+    pub has_any: bool,
 }
 
 impl<'a> TracedPaths<'a> {
-    /// `index`: increments of the first path up to the limit point.
-    pub fn new(family: SceneFamily<'a>, cancel: CancelFlag, index: u64) -> Self {
-        Self { family, cancel, count: 1, longest: LEAST_PATH.max(MOST_PATH_FACTOR.saturating_mul(index)) }
+    /// `index`: increments of the first path up to the critical point.
+    pub fn new(family: SceneFamily<'a>, cancel: CancelFlag, kind: CriticalKind, index: u64) -> Self {
+        Self { family, cancel, kind, count: 1, longest: LEAST_PATH.max(MOST_PATH_FACTOR.saturating_mul(index)) }
     }
 
-    /// The limit point that continues the curve, on a path at a value past a change: followed back there, it is the same state
+    /// The point that continues the curve, on a path at a value past a change: followed back there, it is the same state
     /// but for `slack`. Unless `any`, no other change lies between them.
     pub fn past_change(
         &mut self,
@@ -55,8 +57,8 @@ impl<'a> TracedPaths<'a> {
         let stage = position.history.points.last().map_or(0, |point| point.stage);
         let expected = change.scales.express(change.critical(), stage, scene);
         self.count += 1;
-        let limits = LimitsOnPath::near(scene, &expected, stage, self.longest, &self.cancel);
-        if let Some(nearest) = limits.nearest_first().next().and_then(|points| points.last()) {
+        let points = PointsOnPath::near(scene, (&expected, stage), self.kind, self.longest, &self.cancel);
+        if let Some(nearest) = points.nearest_first().next().and_then(|points| points.last()) {
             self.longest = self.longest.max(MOST_PATH_FACTOR.saturating_mul(nearest.index));
         }
         let continues = |passed: &[PassedPoint]| {
@@ -72,17 +74,17 @@ impl<'a> TracedPaths<'a> {
             let is_same = at_change.distance(&expected) <= SAME_POINT * (1.0 + expected.size()) + slack;
             is_same.then_some(CurvePosition { before: Some(back), ..begin })
         };
-        let position = limits.nearest_first().take(MOST_CANDIDATES).find_map(continues);
-        PathPastChange { position, has_limits: limits.nearest_first().next().is_some() }
+        let position = points.nearest_first().take(MOST_CANDIDATES).find_map(continues);
+        PathPastChange { position, has_any: points.nearest_first().next().is_some() }
     }
 
-    /// Whether a path traced at the value of a point of the curve has this limit point.
-    pub fn has(&mut self, point: &PassedLimit) -> bool {
+    /// Whether a path traced at the value of a point of the curve has this point.
+    pub fn has(&mut self, point: &PassedCritical) -> bool {
         let Ok(scene) = (self.family)(point.parameter) else { return true };
         self.count += 1;
         let state = point.scales.express(&point.state, point.stage, &scene);
-        let limits = LimitsOnPath::near(&scene, &state, point.stage, self.longest, &self.cancel);
-        let nearest = limits.nearest_first().next().and_then(|points| points.last());
+        let points = PointsOnPath::near(&scene, (&state, point.stage), self.kind, self.longest, &self.cancel);
+        let nearest = points.nearest_first().next().and_then(|points| points.last());
         nearest.is_some_and(|found| found.state.distance(&state) <= ON_PATH * (1.0 + state.size()))
     }
 }

@@ -1,4 +1,4 @@
-//! A curve of limit points: one model, a place in it, and the range of the number there, as `arcslip continue` and
+//! A curve of limit points or others: one model, a place in it, and the range of the number there, as `arcslip continue` and
 //! `POST /v1/jobs/{id}/continue` take it.
 
 use crate::model::request::{Analysis, Model};
@@ -15,7 +15,7 @@ pub struct CurveRequest {
     pub curve: CurveSettings,
 }
 
-/// Which limit point is followed, and in what.
+/// Which point is followed, and in what.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
@@ -31,7 +31,7 @@ pub struct CurveSettings {
     /// The limit point of this number on the model's path, from 1. The default is 1, unless `increment` is given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit_point: Option<u64>,
-    /// The limit point at the increment of this index.
+    /// The limit point, smooth bifurcation point or contact change at the increment of this index.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub increment: Option<u64>,
 }

@@ -1,4 +1,4 @@
-//! Curves of limit points over a parameter of a model, judged point by point.
+//! Curves of limit points and others over a parameter of a model, judged point by point.
 //!
 //! | file | what it does |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! The findings of a curve of limit points.
+//! The findings of a curve of limit points, bifurcation points or contact changes.
 
 use crate::check::measure::Errors;
 use crate::model::request::curve::CurveSettings;
@@ -7,7 +7,7 @@ use crate::result::nodal_values::NodalValues;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A point of a curve of limit points.
+/// A point of a curve.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct CurveRow {
@@ -18,7 +18,7 @@ pub struct CurveRow {
     pub place: i64,
     /// The value of the parameter.
     pub value: f64,
-    /// The kind of the limit point.
+    /// Its kind.
     pub kind: PointKind,
     /// Name of the stage that it belongs to.
     pub stage: Arc<str>,
@@ -31,7 +31,7 @@ pub struct CurveRow {
     pub contacts: Vec<ContactState>,
     /// What happens here, in words; null at ordinary points.
     pub event: Option<String>,
-    /// The limit points change their kind here, or the path to them its changes of contact.
+    /// The points change their kind here, or the path to them its changes of contact.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub codimension_two: bool,
     /// Found on a path that was traced for it; the other points are found from their neighbours on the curve.
@@ -41,7 +41,7 @@ pub struct CurveRow {
     pub measure: Errors,
 }
 
-/// A curve of limit points.
+/// A curve of limit points, bifurcation points or contact changes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CurveFound {
     /// The model's own name.

@@ -1,4 +1,4 @@
-//! Follows a curve of limit points and judges its points.
+//! Follows a curve of limit points or others and judges its points.
 
 use crate::check::measure::Judge;
 use crate::continuation::critical_curve::critical_point::in_words;
@@ -75,12 +75,12 @@ fn told(end: &DirectionEnd) -> String {
     match end {
         DirectionEnd::Range => "the end of the range is reached".to_owned(),
         DirectionEnd::Lost { value, why } => {
-            format!("the limit point does not go on past {}: {why}", in_words(*value))
+            format!("the curve does not go on past {}: {why}", in_words(*value))
         }
         DirectionEnd::OffPath { value, last, end } => {
             let since = last.map_or_else(String::new, |last| format!("between {} and ", in_words(last)));
             format!(
-                "{}; a path of its own at {} has no such limit point: {since}there contacts change between the points of \
+                "{}; a path of its own at {} has no such point: {since}there contacts change between the points of \
                  the curve, and its points past that are on no path; start it anew from a value past it",
                 told(end),
                 in_words(*value)

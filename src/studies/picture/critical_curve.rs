@@ -1,4 +1,4 @@
-//! The picture of a curve of limit points: their load against the parameter.
+//! The picture of a curve of limit points, bifurcation points or contact changes: their load against the parameter.
 
 use crate::model::InputError;
 use crate::result::increment::PointKind;
@@ -20,12 +20,17 @@ const ROW: i32 = 22;
 const TICKS: usize = 9;
 const LONGEST_NAME: usize = 32;
 
-const SMOOTH: RGBColor = RGBColor(25, 85, 150);
-const NONSMOOTH: RGBColor = RGBColor(190, 20, 40);
+/// The kinds of points, their names and colours.
+const KINDS: [(PointKind, &str, RGBColor); 4] = [
+    (PointKind::SmoothLimit, "smooth limit point", RGBColor(25, 85, 150)),
+    (PointKind::NonsmoothLimit, "nonsmooth limit point", RGBColor(190, 20, 40)),
+    (PointKind::SmoothBifurcation, "bifurcation point", RGBColor(150, 90, 0)),
+    (PointKind::ContactChange, "contact change", RGBColor(60, 60, 60)),
+];
 const PLAIN: Lettering = Lettering { size: 12, color: &INK, bold: false, centred: false };
 
 fn color(kind: PointKind) -> RGBColor {
-    if kind == PointKind::NonsmoothLimit { NONSMOOTH } else { SMOOTH }
+    KINDS.iter().find(|(other, ..)| *other == kind).map_or(KINDS[0].2, |(.., color)| *color)
 }
 
 /// The picture as SVG text: the same for the same rows.
@@ -40,7 +45,7 @@ pub fn svg(found: &CurveFound) -> Result<String, PlotError> {
     let load = Axis::showing(found.rows.iter().map(|row| row.load_factor), TICKS);
     let drawn = shapes::svg(CHART + LEGEND, HEIGHT, |sheet| {
         draw_chart(sheet, found, &across, &load)?;
-        legend(sheet)
+        legend(sheet, found)
     });
     drawn.map_err(|error| PlotError::Drawing(error.to_string()))
 }
@@ -51,12 +56,7 @@ fn draw_chart(sheet: &Sheet<'_>, found: &CurveFound, across: &Axis, load: &Axis)
     let parameter = parameter.strip_prefix("model.").unwrap_or(&parameter);
     let sides = [
         Side { name: across.named(parameter), range: across.range.clone(), tick: &|at| across.tick(at), ticks: TICKS },
-        Side {
-            name: load.named("load factor at the limit point"),
-            range: load.range.clone(),
-            tick: &|at| load.tick(at),
-            ticks: TICKS,
-        },
+        Side { name: load.named("load factor"), range: load.range.clone(), tick: &|at| load.tick(at), ticks: TICKS },
     ];
     let chart = chart::chart(&part, CHART, Some(found.name.as_deref().unwrap_or("curve of limit points")), sides)?;
     let place =
@@ -77,14 +77,11 @@ fn draw_chart(sheet: &Sheet<'_>, found: &CurveFound, across: &Axis, load: &Axis)
     Ok(())
 }
 
-fn legend(sheet: &Sheet<'_>) -> Drawn {
+fn legend(sheet: &Sheet<'_>, found: &CurveFound) -> Drawn {
     let left = CHART + MARGIN / 2;
-    let entries = [
-        ("smooth limit point", Some(SMOOTH)),
-        ("nonsmooth limit point", Some(NONSMOOTH)),
-        ("change of kind or path", None),
-    ];
-    for (number, (words, color)) in (0..).zip(entries) {
+    let kinds = KINDS.iter().filter(|(kind, ..)| found.rows.iter().any(|row| row.kind == *kind));
+    let entries = kinds.map(|(_, words, color)| (*words, Some(*color)));
+    for (number, (words, color)) in (0..).zip(entries.chain([("change of kind or path", None)])) {
         let middle = CAPTION + number * ROW + ROW / 2;
         let at = ((left + 8) * FINE, middle * FINE);
         match color {

@@ -140,9 +140,10 @@ class Client:
         self, model: Union[Model, Mapping[str, Any]], parameter: str, values: Sequence[float], *, step: Optional[float] = None,
         limit_point: Optional[int] = None, increment: Optional[int] = None, key: Optional[str] = None, **analysis: Any
     ) -> "Curve":
-        """Queues a curve of limit points: a limit point of the model's path as the number at a JSON pointer, such as
+        """Queues a curve: a limit point of the model's path as the number at a JSON pointer, such as
         `/model/contacts/0/friction`, varies between two values, with the model's own among them. `limit_point` counts from
-        1 along the path, `increment` is that of a limit point; without either it is the first one."""
+        1 along the path, without either it is the first one; `increment` is that of a limit point, of a smooth bifurcation
+        point or of a contact change."""
         request = as_request(model, analysis)
         request["curve"] = curve_settings(parameter, values, step, limit_point, increment)
         return Curve(self, self.post("/v1/curves", request, key))
@@ -368,7 +369,7 @@ class Job(Resource):
         self, parameter: str, values: Sequence[float], *, step: Optional[float] = None, limit_point: Optional[int] = None,
         increment: Optional[int] = None, key: Optional[str] = None
     ) -> "Curve":
-        """Queues a curve of a limit point of this job; see `Client.curve`."""
+        """Queues a curve of a limit point or another point of this job; see `Client.curve`."""
         request = curve_settings(parameter, values, step, limit_point, increment)
         return Curve(self.client, self.client.post(f"{self.address}/continue", request, key))
 
@@ -426,13 +427,13 @@ def curve_settings(
 
 
 class Curve(Resource):
-    """A curve of limit points over a parameter of the model."""
+    """A curve of limit points or others over a parameter of the model."""
 
     folder = "curves"
 
     def rows(self) -> List[Dict[str, Any]]:
         """The points found so far, in order along the curve: `value`, `load_factor`, `kind`, `displacements`, `event` and so on.
-        Raises `JobFailed` where there is no limit point, or it cannot be followed."""
+        Raises `JobFailed` where there is no such point, or it cannot be followed."""
         found = sorted(self._pages_of_rows(), key=lambda row: row["place"])
         if not found and self.status not in UNDER_WAY and self.record.get("error"):
             raise JobFailed(f"curve {self.id} has no point: {self.record['error']}")

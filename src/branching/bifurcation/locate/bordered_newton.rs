@@ -3,27 +3,18 @@
 //! Between two points of the path the equations change from `J` at some place by approximately `δ D`, with `D` their
 //! rate of change between the points. Crossings are therefore expected where `(J + δ D) φ = 0`; block inverse iteration
 //! with `J⁻¹ D` finds those nearest to the place first (B. N. Parlett, *The Symmetric Eigenvalue Problem*, SIAM 1998,
-//! chapter 14). From there Newton's method on
-//!
-//! ```text
-//! F(x) + Ψ μ = 0,      G(x) = 0
-//! ```
-//!
-//! (`bordering`) finds the point where `k` motions become free together. `G = 0` comprises `k (k + 1)` equations for
-//! `k + 1` unknowns: where `k > 1` eigenvalues vanish together all of them hold; where the eigenvalues are merely close
-//! to each other they do not. The path's own direction at the point is the root of `ψ_j F''(v, v) = 0` that continues
-//! it.
+//! chapter 14). From there Newton's method finds the point (`singular_point`).
 
 use crate::algebra::SystemFactorisation;
+use crate::branching::bifurcation::locate::singular_point::SingularPoint;
 use crate::branching::bifurcation::locate::tolerances::{
-    BORDERED_CORRECTION, BRACKET_MARGIN, CLUSTER_WIDTH, CONTINUATION_COSINE, COUNTING_OFFSET, DISTANCE_FROM_PATH,
-    ORTHOGONAL_REMAINDER, REAL_EIGENVALUE_TOLERANCE, STALLED_CORRECTION, START_DISTANCE, TEST_FUNCTION_TOLERANCE,
+    BRACKET_MARGIN, CLUSTER_WIDTH, CONTINUATION_COSINE, COUNTING_OFFSET, DISTANCE_FROM_PATH, ORTHOGONAL_REMAINDER,
+    REAL_EIGENVALUE_TOLERANCE, START_DISTANCE, TEST_FUNCTION_TOLERANCE,
 };
 use crate::branching::bifurcation::locate::{Crossing, Located};
-use crate::branching::bifurcation::singularity::bordering::{Bordering, orthonormal};
 use crate::branching::bifurcation::singularity::null_vectors::NullVectors;
 use crate::branching::bifurcation::singularity::test_functions::{Signature, SignatureChange};
-use crate::mechanics::equations::{Kind, ModeSystem, matrix, mode_factorisation, rate_recovery, residual};
+use crate::mechanics::equations::{Kind, ModeSystem, matrix, mode_factorisation, rate_recovery};
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::budget;
 use crate::step::corrector::cost_counters::Work;
@@ -31,7 +22,7 @@ use crate::step::corrector::newton;
 use crate::step::corrector::tolerances::ACCEPTED_RESIDUAL;
 use crate::step::interpolation::{PlacedPoint, between, placed, unit};
 use crate::step::mode_step::{Reached, StepStart};
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
 /// Rounds of block inverse iteration.
@@ -43,8 +34,6 @@ const BESIDE: usize = 3;
 const MOST_IN_BLOCK: usize = 8;
 /// Places in the bracket, relative to its length, from which its crossings are sought, one after another.
 const FROM: [f64; 3] = [0.5, 0.2, 0.8];
-/// Newton iterations.
-const MOST_ITERATIONS: usize = 12;
 /// Most brackets in which the first of several crossings is sought.
 const MOST_BRACKETS: usize = 6;
 
@@ -53,16 +42,6 @@ struct Expected {
     place: f64,
     /// Motions that become free there.
     motions: Vec<Rate>,
-}
-
-/// A singular point.
-struct Singular<'a> {
-    bordering: Bordering<'a>,
-    state: State,
-    /// `ψ_j F''(X_l, X_i)` for each `l`, with rows `j` and columns `i`.
-    curvatures: Vec<DMatrix<f64>>,
-    /// Remaining values of the test functions, for `k > 1` motions that do not become free together.
-    rest: DMatrix<f64>,
 }
 
 /// The first crossing of a step, as [`crate::branching::bifurcation::locate::locate`] returns it; `None` where this
@@ -216,71 +195,14 @@ impl BorderedNewton<'_, '_> {
     }
 
     /// Newton's method for the singular point.
-    fn singular(&self, mut state: State, along: &Rate, motions: Vec<Rate>) -> Option<Singular<'_>> {
-        let structure = self.start.loading.structure;
+    fn singular(&self, state: State, along: &Rate, motions: Vec<Rate>) -> Option<SingularPoint<'_>> {
         let reach = self.right.place - self.left.place;
-        let mut rows = orthonormal(std::iter::once(along.clone()).chain(motions))?;
-        let forces = |rate: &Rate| {
-            DVector::from_iterator(
-                structure.unknowns(),
-                structure.freedom_of.iter().map(|freedom| rate.displacement[*freedom]),
-            )
-        };
-        let mut columns: Vec<DVector<f64>> =
-            rows[1..].iter().filter_map(|rate| forces(rate).try_normalize(0.0)).collect();
-        if columns.len() + 1 != rows.len() {
-            return None;
-        }
-        let mut values = DVector::zeros(self.system.size());
-        let mut force = vec![0.0; structure.freedoms()];
-        let mut least = f64::INFINITY;
-        for _ in 0..MOST_ITERATIONS {
-            let mut iterate = self.system.iterate(state);
-            residual::make_consistent(self.system, &mut iterate);
-            residual::write_residual(self.system, &iterate, &mut values, &mut force);
-            let bordering = Bordering::new(self.system, iterate.state.clone(), &rows, &columns)?;
-            let across = bordering.solve(&values)?;
-            let curvatures: Option<Vec<DMatrix<f64>>> =
-                bordering.right.iter().map(|right| bordering.curvatures(&bordering.rate(right))).collect();
-            let curvatures = curvatures?;
-            let mut tests = bordering.tests.clone();
-            // The change of the test functions by the correction across the null vectors; none for too short a
-            // correction.
-            if let Some(moved) = bordering.curvatures(&bordering.rate(&across)) {
-                tests += moved;
-            }
-            let weights = weights(&tests, &curvatures)?;
-            curvatures.iter().zip(weights.iter()).for_each(|(curvatures, weight)| tests -= curvatures * *weight);
-            let mut correction = across;
-            for (weight, right) in weights.iter().zip(&bordering.right) {
-                correction.axpy(-weight, right, 1.0);
-            }
-            let size = rate_recovery::length_of(self.system, &correction);
-            if !(size.is_finite() && size <= reach) {
-                return None;
-            }
-            state = rate_recovery::corrected_by(self.system, iterate, &correction).state;
-            if state.distance(self.start.state) <= START_DISTANCE {
-                return None;
-            }
-            let stalled = size > 0.5 * least;
-            // A single test function is zero after each linearised correction; its value before the correction shows
-            // convergence.
-            let is_zero = || columns.len() > 1 || bordering.tests.amax() <= TEST_FUNCTION_TOLERANCE;
-            if size <= BORDERED_CORRECTION || (stalled && size <= STALLED_CORRECTION && is_zero()) {
-                return Some(Singular { bordering, state, curvatures, rest: tests });
-            }
-            if stalled && least.is_finite() && size > 4.0 * least {
-                return None;
-            }
-            least = least.min(size);
-            (rows, columns) = bordering.borders()?;
-        }
-        None
+        let is_ahead = |state: &State| state.distance(self.start.state) > START_DISTANCE;
+        SingularPoint::near(self.system, state, (along, motions), (reach, &is_ahead))
     }
 
     /// The singular point as the end of a step, where it continues the path.
-    fn located(&self, singular: &Singular<'_>, before: Signature, change: SignatureChange) -> Option<Located> {
+    fn located(&self, singular: &SingularPoint<'_>, before: Signature, change: SignatureChange) -> Option<Located> {
         let BorderedNewton { start, system, .. } = self;
         let place = singular.state.distance(start.state);
         if place <= START_DISTANCE || place > self.right.place {
@@ -290,7 +212,7 @@ impl BorderedNewton<'_, '_> {
         if near.distance(&singular.state) > DISTANCE_FROM_PATH * self.right.place {
             return None;
         }
-        let rate = singular.continued(&unit(&rate))?;
+        let rate = singular.continued(&unit(&rate), CONTINUATION_COSINE)?;
         let corrected = newton::judged(system, singular.state.clone(), start.force_scale);
         if corrected.residual > ACCEPTED_RESIDUAL {
             return None;
@@ -335,90 +257,6 @@ impl BorderedNewton<'_, '_> {
         let mut work = Work::default();
         Signature::with_determinant(loading, modes, start, &state, signature.determinant, &mut work)?.negative
     }
-}
-
-impl Singular<'_> {
-    /// `ψ_j F''(v, v)` and half its gradient, with `v` the combination of the null vectors with these weights.
-    fn forms(&self, weights: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
-        let corank = self.bordering.left.len();
-        let mut gradient = DMatrix::zeros(corank, corank + 1);
-        for (curvatures, weight) in self.curvatures.iter().zip(weights.iter()) {
-            gradient += curvatures * *weight;
-        }
-        (&gradient * weights, gradient)
-    }
-
-    /// The direction among the null vectors that continues a direction close to the path's.
-    fn continued(&self, along: &Rate) -> Option<Rate> {
-        let rates: Vec<Rate> = self.bordering.right.iter().map(|right| self.bordering.rate(right)).collect();
-        let count = rates.len();
-        let gram = DMatrix::from_fn(count, count, |i, j| rates[i].product(&rates[j]));
-        let first = gram.lu().solve(&DVector::from_fn(count, |i, _| rates[i].product(along)))?;
-        let mut weights = first.clone();
-        for _ in 0..MOST_ITERATIONS {
-            let (values, gradient) = self.forms(&weights);
-            let mut matrix = (gradient * 2.0).insert_row(count - 1, 0.0);
-            matrix.set_row(count - 1, &first.transpose());
-            let right = values.insert_row(count - 1, first.dot(&weights) - first.norm_squared());
-            let correction = matrix.svd(true, true).solve(&right, f64::EPSILON).ok()?;
-            weights -= &correction;
-            if correction.amax() <= f64::EPSILON {
-                break;
-            }
-        }
-        let mut rate = rates[0].clone();
-        rate.scale(weights[0]);
-        rates[1..].iter().zip(weights.iter().skip(1)).for_each(|(other, weight)| rate.add(other, *weight));
-        let rate = rate.normalised()?;
-        (rate.product(along) >= CONTINUATION_COSINE).then_some(rate)
-    }
-
-    /// The first along the path of crossings that are close to each other, but distinct, with its motion.
-    fn first_apart(&self, start: &State) -> Option<(State, Rate, Rate)> {
-        let corank = self.bordering.left.len();
-        let along = self.bordering.rate(&self.bordering.right[0]);
-        // The first null vector is along the path; G of the other null vectors changes by -ψ F''(t, X).
-        let tests = self.rest.columns(1, corank).into_owned();
-        let slopes = -self.curvatures[0].columns(1, corank).into_owned();
-        let by_place = -(slopes.lu().solve(&tests)?);
-        let values = by_place.complex_eigenvalues();
-        let is_real = |value: &&Complex<f64>| {
-            value.im.abs() <= REAL_EIGENVALUE_TOLERANCE * value.re.abs().max(TEST_FUNCTION_TOLERANCE)
-        };
-        let is_ahead = |place: &f64| {
-            let chord = start.chord(&self.state.advanced(&along, *place));
-            chord.product(&along) > START_DISTANCE
-        };
-        let places = values.iter().filter(is_real).map(|value| value.re).filter(is_ahead);
-        let place = places.min_by(f64::total_cmp)?;
-        let vectors = (&tests + slopes_times(&self.curvatures[0], corank, place)).svd(false, true).v_t?;
-        let weights = vectors.row(corank - 1);
-        let mut motion = along.clone();
-        motion.scale(0.0);
-        for (weight, right) in weights.iter().zip(&self.bordering.right[1..]) {
-            motion.add(&self.bordering.rate(right), *weight);
-        }
-        let state = self.state.advanced(&along, place);
-        Some((state, along.normalised()?, motion.normalised()?))
-    }
-}
-
-/// The change of the test functions of the other null vectors over a distance along the path.
-fn slopes_times(curvatures: &DMatrix<f64>, corank: usize, place: f64) -> DMatrix<f64> {
-    curvatures.columns(1, corank) * -place
-}
-
-/// Weights of the null vectors that bring the test functions to zero, in the least-squares sense:
-/// `G_ji = ψ_j F''(X_l, X_i) w_l`.
-fn weights(tests: &DMatrix<f64>, curvatures: &[DMatrix<f64>]) -> Option<DVector<f64>> {
-    let count = tests.len();
-    let matrix = DMatrix::from_fn(count, curvatures.len(), |row, l| curvatures[l][row]);
-    let right = DVector::from_column_slice(tests.as_slice());
-    let scale = matrix.amax();
-    if !(scale > 0.0 && scale.is_finite()) {
-        return None;
-    }
-    (matrix / scale).svd(true, true).solve(&(right / scale), TEST_FUNCTION_TOLERANCE).ok()
 }
 
 /// Orthonormalises columns over their first rows; a column in the span of the others becomes zero.

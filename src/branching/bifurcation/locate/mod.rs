@@ -9,11 +9,12 @@
 //! one sheet of slips to another (a canard-type point).
 //!
 //! The interpolation is the method for dense matrices. For many unknowns the equations are bordered, so that they are regular at the
-//! point (`bordered_newton`); where this finds no point, as where a crossing is not transversal, the dense method is
+//! point (`bordered_newton`, `singular_point`); where this finds no point, as where a crossing is not transversal, the dense method is
 //! used.
 
 pub(crate) mod bordered_newton;
 pub(crate) mod folded_singularity;
+pub(crate) mod singular_point;
 pub(crate) mod tolerances;
 
 use crate::algebra::scalar_root::find_root;

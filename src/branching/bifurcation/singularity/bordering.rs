@@ -20,13 +20,13 @@ use crate::branching::bifurcation::singularity::tolerances::{
 };
 use crate::mechanics::equations::{Kind, ModeSystem, matrix, mode_factorisation, rate_recovery};
 use crate::mechanics::problem::state::{Rate, State};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 /// The bordered equations at a state; see the module.
 pub(crate) struct Bordering<'a> {
     system: &'a ModeSystem<'a>,
     pub state: State,
-    factors: SparseFactorisation,
+    factors: Factors,
     /// `X`, one vector for each border row, over the unknowns of the mode.
     pub right: Vec<DVector<f64>>,
     /// `ψ`, one vector for each border column, over the equations of the mode without the last.
@@ -35,7 +35,64 @@ pub(crate) struct Bordering<'a> {
     pub tests: DMatrix<f64>,
 }
 
+/// The factorised bordered matrix.
+enum Factors {
+    Sparse(SparseFactorisation),
+    Dense(LU<f64, Dyn, Dyn>),
+}
+
+impl Factors {
+    fn solve(&self, values: &mut DVector<f64>) -> bool {
+        match self {
+            Self::Sparse(factors) => factors.solve(values),
+            Self::Dense(factors) => factors.solve_mut(values),
+        }
+    }
+}
+
+/// `F''(v, ·)`, valid but for the last row.
+pub(crate) enum SecondDerivative {
+    Sparse(Bordered),
+    Dense(DMatrix<f64>),
+}
+
+impl SecondDerivative {
+    /// The product with a vector over the unknowns of the mode.
+    pub fn times(&self, values: &DVector<f64>) -> DVector<f64> {
+        match self {
+            Self::Sparse(matrix) => matrix.times(values),
+            Self::Dense(matrix) => matrix * values,
+        }
+    }
+}
+
 impl<'a> Bordering<'a> {
+    /// As [`new`](Self::new), with sparse matrices or dense ones.
+    pub fn of_any(system: &'a ModeSystem<'a>, state: State, rows: &[Rate], columns: &[DVector<f64>]) -> Option<Self> {
+        if system.loading.structure.layout().is_some() {
+            return Self::new(system, state, rows, columns);
+        }
+        let (size, corank) = (system.size(), columns.len());
+        let matrix = matrix::rate_matrix(system, &state);
+        let stiffness = matrix.amax();
+        let mut matrix = matrix.resize(size + corank, size + corank, 0.0);
+        for (index, rate) in rows.iter().enumerate() {
+            matrix::border_row(system, size - 1 + index, &mut matrix, |freedom| rate.displacement[freedom], rate.load);
+        }
+        for (index, column) in columns.iter().enumerate() {
+            column.iter().enumerate().for_each(|(row, value)| matrix[(row, size + index)] += stiffness * value);
+        }
+        let transposed = matrix.transpose().lu();
+        let solve = |place: usize| {
+            let mut values = unit(size + corank, place);
+            transposed.solve_mut(&mut values).then(|| values.rows(0, size - 1).into_owned())
+        };
+        let left = (0..corank).map(|index| solve(size + index)).collect::<Option<_>>()?;
+        let factors = Factors::Dense(matrix.lu());
+        let (right, tests) = null_vectors(&factors, size, corank)?;
+        Some(Self { system, state, factors, right, left, tests })
+    }
+
     /// Borders the equations by a row along each of `rows`, one more than there are columns; `columns` are forces over
     /// the unknown displacements. `None` with dense matrices, and where the bordered system is singular.
     pub fn new(system: &'a ModeSystem<'a>, state: State, rows: &[Rate], columns: &[DVector<f64>]) -> Option<Self> {
@@ -50,21 +107,8 @@ impl<'a> Bordering<'a> {
         }
         let transposed = matrix.transposed();
         let factors = SparseFactorisation::new(matrix, mode_factorisation::holdings(system))?;
-        let unit = |place: usize| {
-            let mut values = DVector::zeros(size + corank);
-            values[place] = 1.0;
-            values
-        };
-        let mut tests = DMatrix::zeros(corank, corank + 1);
-        let mut right = Vec::with_capacity(corank + 1);
-        for index in 0..=corank {
-            let mut values = unit(size - 1 + index);
-            if !factors.solve(&mut values) {
-                return None;
-            }
-            tests.set_column(index, &values.rows(size, corank));
-            right.push(values.rows(0, size).into_owned());
-        }
+        let factors = Factors::Sparse(factors);
+        let (right, tests) = null_vectors(&factors, size, corank)?;
         let forces: Vec<DVector<f64>> = columns.iter().map(|column| column * stiffness).collect();
         let left = by_symmetry(system, &right, &forces, &transposed, SYMMETRY_TEST_FACTOR * tests.amax());
         let left = match left {
@@ -73,7 +117,7 @@ impl<'a> Bordering<'a> {
                 let transposed =
                     SparseFactorisation::new(transposed, &mode_factorisation::holdings(system).transposed())?;
                 let solved = (0..corank).map(|index| {
-                    let mut values = unit(size + index);
+                    let mut values = unit(size + corank, size + index);
                     transposed.solve(&mut values).then(|| values.rows(0, size - 1).into_owned())
                 });
                 solved.collect::<Option<_>>()?
@@ -133,17 +177,30 @@ impl<'a> Bordering<'a> {
     /// Solves for a right-hand side over the equations of the mode; returns the unknowns of the solution, which is
     /// orthogonal to `B`.
     pub fn solve(&self, right_hand_side: &DVector<f64>) -> Option<DVector<f64>> {
-        let size = self.system.size();
-        let mut values = DVector::zeros(size + self.left.len());
+        Some(self.solve_bordered(right_hand_side)?.0)
+    }
+
+    /// As [`solve`](Self::solve), with the weights of the border columns.
+    pub fn solve_bordered(&self, right_hand_side: &DVector<f64>) -> Option<(DVector<f64>, DVector<f64>)> {
+        let (size, corank) = (self.system.size(), self.left.len());
+        let mut values = DVector::zeros(size + corank);
         values.rows_mut(0, size - 1).copy_from(&right_hand_side.rows(0, size - 1));
-        self.factors.solve(&mut values).then(|| values.rows(0, size).into_owned())
+        let parts = |values: DVector<f64>| (values.rows(0, size).into_owned(), values.rows(size, corank).into_owned());
+        self.factors.solve(&mut values).then(|| parts(values))
     }
 
     /// `F''(v, ·)`, valid but for the last row; `None` where the motion is zero.
-    pub fn second_derivative(&self, along: &Rate) -> Option<Bordered> {
+    pub fn second_derivative(&self, along: &Rate) -> Option<SecondDerivative> {
         let size = along.size();
         if size <= 0.0 {
             return None;
+        }
+        let step = EXTRAPOLATED_DIFFERENCE_STEP / size;
+        // (4 D(h/2) - D(h)) / 3, as 4/3 (D(h/2) - D(h)/4).
+        if let Factors::Dense(_) = self.factors {
+            let at = |step: f64| matrix::rate_matrix(self.system, &self.state.advanced(along, step));
+            let difference = |step: f64| (at(step) - at(-step)) * (0.5 / step);
+            return Some(SecondDerivative::Dense((difference(0.5 * step) - difference(step) * 0.25) * (4.0 / 3.0)));
         }
         let difference = |step: f64| {
             let at = |step: f64| {
@@ -152,9 +209,8 @@ impl<'a> Bordering<'a> {
             };
             Some(at(step)?.minus(&at(-step)?, 0.5 / step))
         };
-        let step = EXTRAPOLATED_DIFFERENCE_STEP / size;
-        // (4 D(h/2) - D(h)) / 3, as 4/3 (D(h/2) - D(h)/4).
-        Some(difference(0.5 * step)?.minus(&difference(step)?.scaled(0.25), 4.0 / 3.0))
+        let derivative = difference(0.5 * step)?.minus(&difference(step)?.scaled(0.25), 4.0 / 3.0);
+        Some(SecondDerivative::Sparse(derivative))
     }
 
     /// `ψ_j F''(v, X_i)` for all `j` (rows) and `i` (columns).
@@ -169,6 +225,28 @@ impl<'a> Bordering<'a> {
         }
         Some(curvatures)
     }
+}
+
+/// A vector of this length with a one at a place.
+fn unit(length: usize, place: usize) -> DVector<f64> {
+    let mut values = DVector::zeros(length);
+    values[place] = 1.0;
+    values
+}
+
+/// `X` and `G`.
+fn null_vectors(factors: &Factors, size: usize, corank: usize) -> Option<(Vec<DVector<f64>>, DMatrix<f64>)> {
+    let mut tests = DMatrix::zeros(corank, corank + 1);
+    let mut right = Vec::with_capacity(corank + 1);
+    for index in 0..=corank {
+        let mut values = unit(size + corank, size - 1 + index);
+        if !factors.solve(&mut values) {
+            return None;
+        }
+        tests.set_column(index, &values.rows(size, corank));
+        right.push(values.rows(0, size).into_owned());
+    }
+    Some((right, tests))
 }
 
 /// The left vectors without a factorisation, where no contact slips against friction: then a motion without load, with

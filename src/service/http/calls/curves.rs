@@ -1,4 +1,4 @@
-//! Curves of limit points: submit, continue from a job, list, read, follow, cancel, delete; their rows, table and picture.
+//! Curves of limit points, bifurcation points and contact changes: submit, continue from a job, list, read, follow, cancel, delete; their rows, table and picture.
 
 use crate::model::request::curve::{CurveRequest, CurveSettings};
 use crate::service::http::answer::problem::Problem;
@@ -57,11 +57,12 @@ impl WithFindings for Curve {
     }
 }
 
-/// Queue a curve of limit points, or only check it.
+/// Queue a curve of limit points or others, or only check it.
 ///
-/// A limit point of the model's path is followed as a number of the model varies: each point is found from its neighbours
-/// on the curve, without a path of its own. Where the limit point changes its kind, or the path to it its changes of contact,
-/// this is located in the parameter, and the path is traced once more to go on from there.
+/// A limit point, bifurcation point or contact change of the model's path is followed as a number of the model varies: each
+/// point is found from its neighbours on the curve, without a path of its own. Where the points change their kind, or the
+/// path to them its changes of contact, this is located in the parameter, and the path is traced once more to go on from
+/// there.
 #[utoipa::path(
     post, path = "/v1/curves", tag = document::CURVES, operation_id = "submit_curve",
     params(SubmitParameters),
@@ -75,13 +76,13 @@ pub async fn submit(submission: Submission<Curve>) -> Result<Response, Problem> 
     submission.submit().await
 }
 
-/// Queue a curve of a limit point of this job.
+/// Queue a curve of a limit point, bifurcation point or contact change of this job.
 ///
-/// The curve has the model and the analysis of the job; with `increment` it starts at the limit point stored there. It
+/// The curve has the model and the analysis of the job; with `increment` it starts at the point stored there. It
 /// stands on its own, so that the job may be deleted. `Idempotency-Key` works as with `POST /v1/jobs`.
 #[utoipa::path(
     post, path = "/v1/jobs/{id}/continue", tag = document::JOBS, operation_id = "continue_job",
-    params(("id" = Uuid, Path, description = "The job whose limit point is followed.")),
+    params(("id" = Uuid, Path, description = "The job of which a point is followed.")),
     request_body = CurveSettings,
     responses(
         (status = 202, description = "Queued, or queued before under the same idempotency key.", body = Curve),
@@ -185,7 +186,7 @@ pub async fn table_txt(target: Target<Curve>) -> Result<Response, Problem> {
     target.found(FindingsSoFar::text).await
 }
 
-/// The load at the limit points against the parameter.
+/// The load at the points against the parameter.
 #[utoipa::path(
     get, path = "/v1/curves/{id}/picture.svg", tag = document::CURVES, operation_id = "get_curve_picture",
     responses((status = 200, description = "The picture.", body = String, content_type = "image/svg+xml"))

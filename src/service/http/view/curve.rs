@@ -1,4 +1,4 @@
-//! Curves of limit points as they are answered.
+//! Curves of limit points and others as they are answered.
 
 use crate::service::http::view::submitted::Submitted;
 use crate::service::jobs::queue::curves::CurvePlan;
@@ -9,7 +9,7 @@ use serde_json::value::RawValue;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-/// A curve of limit points. Its status is `stopped` where there is no limit point to follow, or it cannot be followed, and
+/// A curve of limit points or others. Its status is `stopped` where there is no such point to follow, or it cannot be followed, and
 /// where a limit of this service was reached; `error` says which. How far the curve goes is a finding.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Curve {

@@ -1,5 +1,6 @@
 //! Curves of limit points as jobs, which the same workers run; of a job's own limit points, or of a model.
 
+use crate::continuation::critical_curve::traced_history::CurveRefusal;
 use crate::model::request::curve::CurveSettings;
 use crate::model::{InputError, InputErrors, ParameterCurve, decode};
 use crate::result::increment::{Increment, PointKind};
@@ -70,7 +71,7 @@ impl Jobs {
             return Err(refused("", detail.to_owned()));
         }
         if let Some(increment) = asked.increment {
-            self.check_limit_point(&job, increment).await?;
+            self.check_kind(&job, increment).await?;
         }
         let text = self.store.request(id).await?.ok_or(JobsError::NoJob(id))?;
         let document = with_curve(&text, &asked)?;
@@ -82,8 +83,8 @@ impl Jobs {
         })
     }
 
-    /// Refuses an increment that is not stored, and one that is no limit point.
-    async fn check_limit_point(&self, job: &JobRecord, increment: u64) -> Result<(), JobsError> {
+    /// Refuses an increment that is not stored, and one of a kind that cannot be followed.
+    async fn check_kind(&self, job: &JobRecord, increment: u64) -> Result<(), JobsError> {
         let before = increment.checked_sub(1);
         let lines = self.store.increments(job.id, before, Page { rows: 1, bytes: 1 }).await?;
         let Some(line) = lines.first().filter(|line| line.index == increment) else {
@@ -91,10 +92,15 @@ impl Jobs {
         };
         let kind = serde_json::from_str::<Increment>(&line.body).map(|increment| increment.point.kind);
         match kind {
-            Ok(PointKind::SmoothLimit | PointKind::NonsmoothLimit) => Ok(()),
+            Ok(
+                PointKind::SmoothLimit
+                | PointKind::NonsmoothLimit
+                | PointKind::SmoothBifurcation
+                | PointKind::ContactChange,
+            ) => Ok(()),
             _ => {
-                let detail = "is no limit point; take one whose `point.kind` is `smooth_limit` or `nonsmooth_limit`";
-                Err(refused("/increment", format!("increment {increment} {detail}")))
+                let detail = CurveRefusal::NotCritical(increment).to_string();
+                Err(refused("/increment", detail))
             }
         }
     }

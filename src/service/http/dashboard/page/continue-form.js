@@ -1,5 +1,5 @@
-// Follows a limit point of the path in a number of the model: the form below the directions, at the chosen limit point or the
-// first one.
+// Follows a point of the path in a number of the model: the form below the directions, at the chosen limit point, bifurcation
+// point or contact change, or at the first limit point.
 
 import { post } from "./api.js";
 import { button, element, fill } from "./dom.js";
@@ -7,6 +7,7 @@ import { mayJump } from "./quantities.js";
 import { kindWords, short } from "./words.js";
 
 const LIMITS = ["smooth_limit", "nonsmooth_limit"];
+const FOLLOWED = [...LIMITS, "smooth_bifurcation", "contact_change"];
 /** Places that are suggested of each kind. */
 const SUGGESTED = 12;
 /** Names of stiffnesses. */
@@ -21,9 +22,9 @@ export class ContinueForm {
   }
 
   choose(path, at) {
-    const limits = path.points.filter(({ point }) => LIMITS.includes(point.kind));
-    const chosen = limits.find(({ index }) => index === at) ?? limits[0];
-    // Of a path that jumps no limit point is followed.
+    const points = path.points.filter(({ point }) => FOLLOWED.includes(point.kind));
+    const chosen = points.find(({ index }) => index === at) ?? points.find(({ point }) => LIMITS.includes(point.kind)) ?? points[0];
+    // Of a path that jumps no point is followed.
     const wanted = chosen && !path.job.parent && !mayJump(path.request) ? `${path.id} ${chosen.index}` : "";
     if (wanted === this.shown) return;
     this.shown = wanted;
@@ -61,13 +62,14 @@ export class ContinueForm {
       }
       pressed.ariaDisabled = "false";
     };
-    fill(this.panel, element("h2", {}, "Limit point in a parameter"),
+    fill(this.panel, element("h2", {}, "A point in a parameter"),
       element("p", { class: "quiet" },
-        `Follow the ${kindWords(point.kind)} at increment ${index} as a number of the model varies, such as its load over friction.`),
+        `Follow the ${kindWords(point.kind)} at increment ${index} as a number of the model varies, such as its load over friction.
+        Another limit point, bifurcation point or contact change is followed where it is the shown increment.`),
       element("datalist", { id: "curve-parameters" }, places.map((place) => element("option", { value: place }))),
       element("div", { class: "actions" },
         element("label", {}, "Place ", parameter), element("label", {}, "from ", from), element("label", {}, "to ", to),
-        button("Follow the limit point", (event) => follow(event.target), { id: "continue" })), problem);
+        button("Follow the point", (event) => follow(event.target), { id: "continue" })), problem);
   }
 }
 

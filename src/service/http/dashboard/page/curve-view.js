@@ -1,5 +1,5 @@
-// A curve: the load at limit points against a number of the model, smooth and nonsmooth ones apart, with the points where the
-// curve changes, and how it ends.
+// A curve: the load at limit points, bifurcation points or contact changes against a number of the model, each kind apart, with
+// the points where the curve changes, and how it ends.
 
 import { element, fill, table } from "./dom.js";
 import { axis, colourOf } from "./plot-style.js";
@@ -7,6 +7,8 @@ import { RowsView } from "./rows-view.js";
 import { placeWords } from "./sweep-values.js";
 import { kindWords, short, verbatim } from "./words.js";
 
+/** The kinds of points, each with a line of its own. */
+const KINDS = ["smooth_limit", "nonsmooth_limit", "smooth_bifurcation", "contact_change"];
 /** Milliseconds between drawings while points come in. */
 const AGAIN = 300;
 /** Points that stand in the table; the others are in the files. */
@@ -14,7 +16,7 @@ const LISTED = 500;
 
 export class CurveView extends RowsView {
   constructor(section, told) {
-    super(section, told, { kind: "curve", place: "/v1/curves", title: "Limit points", pause: AGAIN });
+    super(section, told, { kind: "curve", place: "/v1/curves", title: "Points of the curve", pause: AGAIN });
   }
 
   progressWords() {
@@ -36,9 +38,9 @@ export class CurveView extends RowsView {
     const rows = this.rows.toSorted((a, b) => a.place - b.place);
     const parameter = placeWords(this.record.plan.curve.parameter);
     const changes = rows.filter((row) => row.codimension_two);
-    this.words.textContent = `The load factor at the limit point. ${changes.length
-      ? "Rings: the limit point changes its kind, or the path comes to it by other contact changes." : ""}`;
-    const traces = ["smooth_limit", "nonsmooth_limit"].map((kind, place) => ({
+    this.words.textContent = `The load factor at each point. ${changes.length
+      ? "Rings: the points change their kind, or the path comes to them by other contact changes." : ""}`;
+    const traces = KINDS.map((kind, place) => ({
       type: "scatter", mode: "lines+markers", name: kindWords(kind), connectgaps: false,
       x: rows.map(({ value }) => value),
       // A point where the kind changes belongs to both lines.
@@ -54,7 +56,7 @@ export class CurveView extends RowsView {
         marker: { size: 12, symbol: "circle-open", line: { width: 2 }, color: colourOf(2) },
       });
     }
-    await this.plot(traces, { xaxis: axis(parameter), yaxis: axis("load factor at the limit point"), showlegend: traces.length > 1 });
+    await this.plot(traces, { xaxis: axis(parameter), yaxis: axis("load factor"), showlegend: traces.length > 1 });
     fill(this.listing, table([parameter, "load factor", "kind", "event"], rows.slice(0, LISTED).map((row) => [
       Number(row.value.toPrecision(10)), Number(row.load_factor.toPrecision(10)), kindWords(row.kind),
       row.event ?? (row.from_path ? "on a path traced for it" : ""),
