@@ -88,6 +88,41 @@ fn branches_that_a_parameter_parts_are_not_followed_as_if_they_met() {
     }
 }
 
+/// The limit load of the imperfect truss comes to the buckling load of the perfect one, with a cusp over the imperfection.
+#[test]
+fn limit_loads_over_an_imperfection_have_a_cusp_at_the_bifurcation_point() {
+    let mut request = tall_truss(2.5);
+    request.model.nodes.insert("apex".to_owned(), vec![0.1, 2.5]);
+    let settings = json!({"parameter": "/model/nodes/apex/0", "range": [-0.1, 0.2], "step": 0.02});
+    let curve = curve_of(&request, &settings).expect("a curve");
+    let found = followed(&curve).expect("a curve");
+    let summary = ended(&found);
+    assert_eq!(summary.ends_below.as_deref(), Some("the end of the range is reached"));
+    assert!(found.rows.len() <= 40, "{}", found.rows.len());
+    let changes = changes(&found);
+    let [cusp] = changes[..] else { panic!("{changes:?}") };
+    let (load, apex) = buckling(2.5);
+    println!("cusp at {:e}, load off by {:e}, {} rows", cusp.value, cusp.load_factor / load - 1.0, found.rows.len());
+    assert!(cusp.value.abs() <= 1e-9 && (cusp.load_factor / load - 1.0).abs() <= 1e-9, "{cusp:?}");
+    close(cusp.displacements.get("apex").expect("the apex")[1] + 2.5, apex, 1e-9, "where it buckles");
+    let is_limit = |kind| matches!(kind, PointKind::SmoothLimit | PointKind::NonsmoothLimit);
+    for row in found.rows.iter().filter(|row| !row.codimension_two) {
+        let off = off_points_of_path(&curve, row, &is_limit).unwrap_or(f64::INFINITY);
+        assert!(off <= 1e-8, "{off:e} at {}", row.value);
+        // The truss is symmetric.
+        if let Some(other) = found.rows.iter().find(|other| other.value == -row.value) {
+            close(other.load_factor, row.load_factor, 1e-10, "the load of the mirror image");
+        }
+    }
+    // `1 - load / buckling load` grows with the power 2/3.
+    let fall = |row: &CurveRow| 1.0 - row.load_factor / load;
+    let near: Vec<&CurveRow> = found.rows.iter().filter(|row| row.value > 0.0 && row.value < 0.01).collect();
+    let pairs = near.windows(2).map(|pair| (fall(pair[1]) / fall(pair[0])).ln() / (pair[1].value / pair[0].value).ln());
+    let powers: Vec<f64> = pairs.collect();
+    println!("{powers:?}");
+    assert!(powers.iter().all(|power| (power - 2.0 / 3.0).abs() < 0.03), "{powers:?}");
+}
+
 /// Euler's column of 16 beams, pinned at both ends: with sparse matrices.
 fn column(bending: f64) -> JobRequest {
     let count = 16;

@@ -1,7 +1,11 @@
 //! A point of a curve of critical points in the user's units and names.
 
-use crate::continuation::critical_curve::contact_history::{ContactHistory, CriticalKind, HistoryPoint, PointClosing};
-use crate::continuation::critical_curve::solved_history::{ConditionSide, PathCondition, SolvedHistory, scene_loading};
+use crate::continuation::critical_curve::history::contact_history::{
+    ContactHistory, CriticalKind, HistoryPoint, PointClosing,
+};
+use crate::continuation::critical_curve::history::solved_history::{
+    ConditionSide, PathCondition, SolvedHistory, scene_loading,
+};
 use crate::continuation::path_state::resumable_state::constant_load;
 use crate::continuation::path_state::row_conversion::{self, RowSource};
 use crate::continuation::path_state::totals::Totals;

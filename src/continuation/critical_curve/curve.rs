@@ -4,14 +4,16 @@ use crate::algebra::scalar_root::find_root;
 use crate::continuation::critical_curve::critical_point::{self, CurvePoint, PointNote};
 use crate::continuation::critical_curve::curve_outcome::{CurveEnd, CurveFailure, CurveReport, DirectionEnd};
 use crate::continuation::critical_curve::curve_position::{CurvePosition, SceneFamily, extrapolated};
+use crate::continuation::critical_curve::cusp::Cusp;
+use crate::continuation::critical_curve::history::solved_history::{PathCondition, SolvedHistory};
+use crate::continuation::critical_curve::history::taken_directions::TakenDirections;
+use crate::continuation::critical_curve::history::tolerances::{FOUND_ZERO, PASSED, UNFOLDED};
+use crate::continuation::critical_curve::history::traced_history::{self, CurveRefusal, CurveStart};
 use crate::continuation::critical_curve::last_points::LastPoints;
-use crate::continuation::critical_curve::solved_history::{PathCondition, SolvedHistory};
-use crate::continuation::critical_curve::taken_directions::TakenDirections;
 use crate::continuation::critical_curve::tolerances::{
-    FIRST_DEVIATION, FOUND_ZERO, LARGEST_DEVIATION, MODEL_STEP, PASSED, PAST_CHANGE, PREFERENCE_WIDTH, SAME_POINT,
-    SHORTEST_CHORD, SHORTEST_STEP, STEP_GROWTH, STEP_ROUND_OFF, TURNING_STEP, UNFOLDED, UNLOCATED_STEPS,
+    FIRST_DEVIATION, LARGEST_DEVIATION, MODEL_STEP, PAST_CHANGE, PREFERENCE_WIDTH, SAME_POINT, SHORTEST_CHORD,
+    SHORTEST_STEP, STEP_GROWTH, STEP_ROUND_OFF, TURNING_STEP, UNLOCATED_STEPS,
 };
-use crate::continuation::critical_curve::traced_history::{self, CurveRefusal, CurveStart};
 use crate::continuation::critical_curve::traced_paths::TracedPaths;
 use crate::continuation::critical_curve::turning_point::{self, TurningPoint};
 use crate::continuation::scene::Scene;
@@ -207,6 +209,9 @@ impl<'a> CriticalCurve<'a> {
             {
                 return self.turn_back(walk, turn, accept);
             }
+            if let Some(cusp) = self.cusp_ahead(walk) {
+                return self.pass_cusp(walk, cusp, paths, accept);
+            }
             if !is_shortest {
                 return walk.shorten();
             }
@@ -326,6 +331,47 @@ impl<'a> CriticalCurve<'a> {
         // The chord from the turning point is no direction of the curve, which begins there at a right angle.
         walk.place.before = None;
         ControlFlow::Continue(())
+    }
+
+    /// The bifurcation point that the curve passes through in the step that failed, if there is one.
+    fn cusp_ahead(&mut self, walk: &Walk) -> Option<Cusp> {
+        if walk.step > TURNING_STEP * self.range.step {
+            return None;
+        }
+        let left = (walk.target(&self.range) - walk.place.here.parameter).abs();
+        Cusp::ahead(self.family, &walk.place, (walk.sense, left.min(2.0 * walk.step)), &mut self.work)
+    }
+
+    /// Tells of the bifurcation point, and goes on along the limit points past it.
+    fn pass_cusp(
+        &mut self,
+        walk: &mut Walk,
+        cusp: Cusp,
+        paths: &mut TracedPaths<'_>,
+        accept: AcceptPoint<'_>,
+    ) -> ControlFlow<Stopped> {
+        let event = "the limit point comes to a bifurcation point; its load has a cusp over the parameter";
+        let note = PointNote { event: Some(event.to_owned()), codimension_two: true, from_path: false };
+        flow(self.emit(&cusp.scene, &cusp.at, note, accept))?;
+        let (at, target) = (cusp.at.here.parameter, walk.target(&self.range));
+        if at == target {
+            return ControlFlow::Break(Stopped::Ended(DirectionEnd::Range));
+        }
+        for part in PAST_CHANGE {
+            let value = stepped(at, walk.sense * part * self.range.step, target);
+            let Ok(scene) = (self.family)(value) else { continue };
+            let found = paths.past_cusp(&cusp, (&scene, value), &mut self.work);
+            if self.cancel.is_cancelled() {
+                return ControlFlow::Break(Stopped::Cancelled);
+            }
+            if let Some(position) = found {
+                (walk.place, walk.step, walk.taken) = (position, self.range.step, None);
+                let note = PointNote { event: None, codimension_two: false, from_path: true };
+                return flow(self.emit(&scene, &walk.place, note, accept));
+            }
+        }
+        let why = format!("{event}, and the paths past it have no limit point that comes from there");
+        ControlFlow::Break(Stopped::Ended(DirectionEnd::Lost { value: at, why }))
     }
 
     /// The critical point at a value, found from the last ones of the curve; `None` where it is not the same one.

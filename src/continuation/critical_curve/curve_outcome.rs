@@ -1,6 +1,6 @@
 //! How a curve ends, and why one is not followed.
 
-use crate::continuation::critical_curve::traced_history::CurveRefusal;
+use crate::continuation::critical_curve::history::traced_history::CurveRefusal;
 use crate::model::InputErrors;
 
 /// How a curve ended in one direction of the parameter.

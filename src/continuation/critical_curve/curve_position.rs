@@ -1,7 +1,7 @@
 //! The last point of a curve, and the guess at the next.
 
-use crate::continuation::critical_curve::contact_history::{ContactHistory, PointGuess};
-use crate::continuation::critical_curve::solved_history::SolvedHistory;
+use crate::continuation::critical_curve::history::contact_history::{ContactHistory, PointGuess};
+use crate::continuation::critical_curve::history::solved_history::SolvedHistory;
 use crate::continuation::scene::Scene;
 use crate::model::InputErrors;
 

@@ -5,7 +5,7 @@
 
 use crate::continuation::critical_curve::curve_outcome::DirectionEnd;
 use crate::continuation::critical_curve::curve_position::CurvePosition;
-use crate::continuation::critical_curve::solved_history::StateScales;
+use crate::continuation::critical_curve::history::solved_history::StateScales;
 use crate::continuation::critical_curve::tolerances::CLEAR_OF_CHANGE;
 use crate::continuation::critical_curve::traced_paths::TracedPaths;
 use crate::mechanics::problem::state::State;

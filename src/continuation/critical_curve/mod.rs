@@ -4,7 +4,7 @@
 //! Methods Appl. Mech. Eng. 114 (1994) 77). There the extended system is equilibrium with the condition that its tangent is
 //! singular. Here the state depends on the path as well, through friction, and a limit point may be nonsmooth: the extended
 //! system comprises the points at which contacts change, each with the equation of its event, and the limit point at last
-//! (`contact_history`):
+//! (`history`):
 //!
 //! ```text
 //! R_k(x_k; x_{k-1}, p) = 0,    e_k(x_k) = 0,    k = 1, ..., n
@@ -12,44 +12,39 @@
 //!
 //! with the equilibrium `R_k` of the contact mode that begins at `x_{k-1}`, and the event function `e_k` that is zero at its
 //! end; `e_n` is the load rate, or the event function of the contact with which the load turns, or that of any contact that
-//! changes; at a bifurcation point it is the test functions of the bordered equations. The system is block triangular, and is solved block by block (`solved_history`).
+//! changes; at a bifurcation point it is the test functions of the bordered equations. The system is block triangular, and is
+//! solved block by block (`history::solved_history`).
 //!
 //! Along the curve the conditions under which a path passes through these points are watched. Where one of them ends, the
 //! critical point changes its kind, or the path to it its changes of contact: a point of codimension two, which is located
 //! in the parameter. Past it the path itself is traced once more, and its critical point at the same place goes on with the
 //! curve; where there is none, the curve ends, and this is said. The selection rule is watched in the same way: where the path
-//! comes to prefer another direction at one of the points, that is located and told (`taken_directions`). Where two limit
-//! points meet, the curve turns back in the parameter and goes on along the other one (`turning_point`). At each end
-//! one of the last points is compared with a path.
+//! comes to prefer another direction at one of the points, that is located and told (`history::taken_directions`). Where two
+//! limit points meet, the curve turns back in the parameter and goes on along the other one (`turning_point`); where they come
+//! to a bifurcation point, it is located (`cusp`). At each end one of the last points is compared with a path.
 //!
 //! | file | contents |
 //! |---|---|
-//! | `contact_history` | the points by which a path comes to a critical point |
-//! | `branch_point_location` | one of these points, by Newton's method along the branch of its mode |
-//! | `solved_history` | all of them at one value of the parameter, and the conditions of the path |
-//! | `taken_directions` | whether the path takes the directions of the history at its points |
-//! | `traced_history` | the history of a path, traced for it |
+//! | `history` | the points by which a path comes to a critical point, at one value of the parameter |
 //! | `curve`, `curve_position` | the curve, from point to point |
 //! | `traced_paths`, `last_points` | paths to go on past a change, and to compare the ends of the curve with |
 //! | `turning_point` | where it turns back in the parameter |
+//! | `cusp` | where it passes through a bifurcation point |
 //! | `critical_point`, `curve_outcome` | a point of the curve in the user's units, its event in words; how a curve ends |
 //! | `tolerances` | |
 
-mod branch_point_location;
-pub(crate) mod contact_history;
 pub(crate) mod critical_point;
 pub(crate) mod curve;
 pub(crate) mod curve_outcome;
 pub(crate) mod curve_position;
+mod cusp;
+pub(crate) mod history;
 mod last_points;
-mod solved_history;
-mod taken_directions;
 mod tolerances;
-pub(crate) mod traced_history;
 mod traced_paths;
 mod turning_point;
 
 pub use critical_point::CurvePoint;
 pub use curve::{CriticalCurve, CurveRange};
 pub use curve_outcome::{CurveEnd, CurveFailure, CurveReport, DirectionEnd};
-pub use traced_history::CurveStart;
+pub use history::traced_history::CurveStart;

@@ -1,13 +1,15 @@
 //! The paths that are traced for a curve: past a change to go on from, and at its ends to compare its points with.
 
-use crate::continuation::critical_curve::contact_history::{ContactHistory, CriticalKind};
 use crate::continuation::critical_curve::curve_position::{CurvePosition, SceneFamily, extrapolated};
+use crate::continuation::critical_curve::cusp::Cusp;
+use crate::continuation::critical_curve::history::contact_history::{ContactHistory, CriticalKind};
+use crate::continuation::critical_curve::history::solved_history::SolvedHistory;
+use crate::continuation::critical_curve::history::traced_history::PointsOnPath;
 use crate::continuation::critical_curve::last_points::PassedCritical;
-use crate::continuation::critical_curve::solved_history::SolvedHistory;
 use crate::continuation::critical_curve::tolerances::{ON_PATH, SAME_POINT};
-use crate::continuation::critical_curve::traced_history::PointsOnPath;
 use crate::continuation::path_state::passed_points::PassedPoint;
 use crate::continuation::scene::Scene;
+use crate::mechanics::problem::state::State;
 use crate::resources::cancel::CancelFlag;
 use crate::step::corrector::cost_counters::Work;
 
@@ -55,12 +57,7 @@ impl<'a> TracedPaths<'a> {
         work: &mut Work,
     ) -> PathPastChange {
         let stage = position.history.points.last().map_or(0, |point| point.stage);
-        let expected = change.scales.express(change.critical(), stage, scene);
-        self.count += 1;
-        let points = PointsOnPath::near(scene, (&expected, stage), self.kind, self.longest, &self.cancel);
-        if let Some(nearest) = points.nearest_first().next().and_then(|points| points.last()) {
-            self.longest = self.longest.max(MOST_PATH_FACTOR.saturating_mul(nearest.index));
-        }
+        let points = self.near(&change.scales.express(change.critical(), stage, scene), stage, scene);
         let continues = |passed: &[PassedPoint]| {
             let (history, guesses) = ContactHistory::of(scene, passed).ok()?;
             let here = SolvedHistory::of(&history, scene, value, &guesses, work)?;
@@ -76,6 +73,29 @@ impl<'a> TracedPaths<'a> {
         };
         let position = points.nearest_first().take(MOST_CANDIDATES).find_map(continues);
         PathPastChange { position, has_any: points.nearest_first().next().is_some() }
+    }
+
+    /// The limit point that comes from a cusp, on a path at a value past it.
+    pub fn past_cusp(&mut self, cusp: &Cusp, (scene, value): (&Scene, f64), work: &mut Work) -> Option<CurvePosition> {
+        let (at, stage) = (&cusp.at.here, cusp.at.history.points.last()?.stage);
+        let points = self.near(&at.scales.express(at.critical(), stage, scene), stage, scene);
+        let comes = |passed: &[PassedPoint]| {
+            let (history, guesses) = ContactHistory::of(scene, passed).ok()?;
+            let here = SolvedHistory::of(&history, scene, value, &guesses, work)?;
+            let is_one = here.broken().is_empty() && cusp.leads_to(&here, scene);
+            is_one.then_some(CurvePosition { history, here, before: None })
+        };
+        points.nearest_first().take(MOST_CANDIDATES).find_map(comes)
+    }
+
+    /// The points of the curve's kind on a path, those nearest to a state first.
+    fn near(&mut self, state: &State, stage: usize, scene: &Scene) -> PointsOnPath {
+        self.count += 1;
+        let points = PointsOnPath::near(scene, (state, stage), self.kind, self.longest, &self.cancel);
+        if let Some(nearest) = points.nearest_first().next().and_then(|points| points.last()) {
+            self.longest = self.longest.max(MOST_PATH_FACTOR.saturating_mul(nearest.index));
+        }
+        points
     }
 
     /// Whether a path traced at the value of a point of the curve has this point.

@@ -9,9 +9,9 @@
 //! c·(x - x_last) = const,    R(x, p) = 0,    e(x) = 0
 //! ```
 
-use crate::continuation::critical_curve::contact_history::PointGuess;
 use crate::continuation::critical_curve::curve_position::{CurvePosition, SceneFamily, extrapolated};
-use crate::continuation::critical_curve::solved_history::SolvedHistory;
+use crate::continuation::critical_curve::history::contact_history::PointGuess;
+use crate::continuation::critical_curve::history::solved_history::SolvedHistory;
 use crate::continuation::critical_curve::tolerances::{PARAMETER_ROUND_OFF, SMALLEST_RETURN, TURNING_WIDTH};
 use crate::continuation::scene::Scene;
 use crate::mechanics::equations::closing_equation::HyperplaneEquation;

@@ -1,6 +1,6 @@
 //! Curves of limit points as jobs, which the same workers run; of a job's own limit points, or of a model.
 
-use crate::continuation::critical_curve::traced_history::CurveRefusal;
+use crate::continuation::critical_curve::history::traced_history::CurveRefusal;
 use crate::model::request::curve::CurveSettings;
 use crate::model::{InputError, InputErrors, ParameterCurve, decode};
 use crate::result::increment::{Increment, PointKind};

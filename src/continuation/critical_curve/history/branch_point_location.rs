@@ -3,8 +3,8 @@
 //! equations along the branch are singular.
 
 use crate::branching::bifurcation::locate::singular_point::SingularPoint;
-use crate::continuation::critical_curve::contact_history::PointGuess;
-use crate::continuation::critical_curve::tolerances::{
+use crate::continuation::critical_curve::history::contact_history::PointGuess;
+use crate::continuation::critical_curve::history::tolerances::{
     ACCEPTED_CORRECTION, LARGEST_CORRECTION, POINT_ROUND_OFF, SAME_BRANCH, UNFOLDED,
 };
 use crate::mechanics::contact::Mode;
@@ -24,7 +24,7 @@ const DIFFERENCE: f64 = 1e-4;
 
 /// A point of a branch.
 #[derive(Debug, Clone)]
-pub(super) struct BranchPoint {
+pub(crate) struct BranchPoint {
     pub state: State,
     /// The branch's direction there.
     pub rate: Rate,
@@ -38,7 +38,7 @@ pub(super) struct BranchPoint {
 }
 
 /// The branch of a mode, from the state in which the mode begins.
-pub(super) struct ModeBranch<'a> {
+pub(crate) struct ModeBranch<'a> {
     pub loading: Loading<'a>,
     pub modes: &'a [Mode],
     pub anchor: &'a State,

@@ -8,9 +8,11 @@ use crate::branching::directions::arrival_tangent::Incoming;
 use crate::branching::directions::feasible_direction::{PriorMotion, Rules};
 use crate::branching::selection::selection_rule;
 use crate::complementarity::rate_search::branch_and_bound::Effort;
-use crate::continuation::critical_curve::contact_history::{ContactHistory, HistoryPoint, PointClosing, PointGuess};
-use crate::continuation::critical_curve::solved_history::{SolvedHistory, scene_loading};
-use crate::continuation::critical_curve::tolerances::SAME_DIRECTION;
+use crate::continuation::critical_curve::history::contact_history::{
+    ContactHistory, HistoryPoint, PointClosing, PointGuess,
+};
+use crate::continuation::critical_curve::history::solved_history::{SolvedHistory, scene_loading};
+use crate::continuation::critical_curve::history::tolerances::SAME_DIRECTION;
 use crate::continuation::path_state::resumable_state::constant_load;
 use crate::continuation::scene::Scene;
 use crate::mechanics::multi_contact::changeable_contacts::standings;
@@ -20,7 +22,7 @@ use crate::step::event_functions::EventFunction;
 
 /// For each point of the history whether the path takes its direction there.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct TakenDirections(Vec<bool>);
+pub(crate) struct TakenDirections(Vec<bool>);
 
 impl TakenDirections {
     /// Lists the directions at every point of the history at which contacts change, and takes one, as a path does.

@@ -6,8 +6,8 @@
 //! is the zero of its event function on the branch of its mode, from the point before. With another value of the parameter
 //! the same points are found again by Newton's method, without the path between them.
 
-use crate::continuation::critical_curve::solved_history::scene_loading;
-use crate::continuation::critical_curve::tolerances::ZERO_AT_POINT;
+use crate::continuation::critical_curve::history::solved_history::scene_loading;
+use crate::continuation::critical_curve::history::tolerances::ZERO_AT_POINT;
 use crate::continuation::path_state::passed_points::PassedPoint;
 use crate::continuation::path_state::resumable_state::constant_load;
 use crate::continuation::scene::Scene;
@@ -18,7 +18,7 @@ use crate::step::event_functions::{self, EventFunction};
 
 /// What kind of points a curve is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum CriticalKind {
+pub(crate) enum CriticalKind {
     /// Smooth and nonsmooth limit points.
     Limit,
     /// Smooth bifurcation points.
@@ -76,7 +76,7 @@ pub enum HistoryRefusal {
 
 /// A point of the history.
 #[derive(Debug, Clone)]
-pub(super) struct HistoryPoint {
+pub(crate) struct HistoryPoint {
     pub stage: usize,
     /// Modes in which the path arrives and leaves.
     pub modes: Vec<Mode>,
@@ -92,7 +92,7 @@ pub(super) struct HistoryPoint {
 
 /// What is zero at a point of the history.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum PointClosing {
+pub(crate) enum PointClosing {
     Event(EventFunction),
     /// A bound of the stage, by its place among them.
     StageEnd(usize),
@@ -104,7 +104,7 @@ pub(super) enum PointClosing {
 
 /// The state of a point and the directions of the path there, where Newton's method starts.
 #[derive(Debug, Clone)]
-pub(super) struct PointGuess {
+pub(crate) struct PointGuess {
     pub state: State,
     /// The converged point from which the state was extrapolated; the state itself where there is none.
     pub from: State,
@@ -116,7 +116,7 @@ pub(super) struct PointGuess {
 
 /// The points by which a path comes to a critical point, the last of them.
 #[derive(Debug, Clone)]
-pub(super) struct ContactHistory {
+pub(crate) struct ContactHistory {
     pub points: Vec<HistoryPoint>,
     pub kind: PointKind,
     /// For each contact whether it has friction in the model of the path: without, its slips have no sense that friction opposes.

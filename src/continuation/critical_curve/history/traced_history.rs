@@ -1,7 +1,9 @@
 //! The history of a path that is traced for it, to a point that can be followed in a parameter.
 
-use crate::continuation::critical_curve::contact_history::{ContactHistory, CriticalKind, HistoryRefusal, PointGuess};
-use crate::continuation::critical_curve::tolerances::ASKED_POINT;
+use crate::continuation::critical_curve::history::contact_history::{
+    ContactHistory, CriticalKind, HistoryRefusal, PointGuess,
+};
+use crate::continuation::critical_curve::history::tolerances::ASKED_POINT;
 use crate::continuation::path::iterator::Path;
 use crate::continuation::path_state::passed_points::PassedPoint;
 use crate::continuation::scene::Scene;
@@ -67,7 +69,7 @@ fn is_joined(point: &PassedPoint) -> bool {
 }
 
 /// The critical point at which a curve starts.
-pub(super) struct FirstPoint {
+pub(crate) struct FirstPoint {
     pub history: ContactHistory,
     pub guesses: Vec<PointGuess>,
     pub kind: CriticalKind,
@@ -79,7 +81,7 @@ pub(super) struct FirstPoint {
 ///
 /// # Errors
 /// See [`CurveRefusal`].
-pub(super) fn start(scene: &Scene, start: CurveStart, cancel: &CancelFlag) -> Result<FirstPoint, CurveRefusal> {
+pub(crate) fn start(scene: &Scene, start: CurveStart, cancel: &CancelFlag) -> Result<FirstPoint, CurveRefusal> {
     let (passed, kind) = up_to(scene, start, cancel)?;
     let asked = &passed[passed.len() - 1];
     if !passed.iter().any(is_joined) {
@@ -133,7 +135,7 @@ fn up_to(
 }
 
 /// The points of one kind in a stage on a path with all contact changes resolved.
-pub(super) struct PointsOnPath {
+pub(crate) struct PointsOnPath {
     passed: Vec<PassedPoint>,
     /// Places of those points among them, the one nearest to a state first.
     found: Vec<usize>,

@@ -1,8 +1,10 @@
 //! The points of a history at one value of the parameter, and the conditions under which a path comes along them.
 
-use crate::continuation::critical_curve::branch_point_location::ModeBranch;
-use crate::continuation::critical_curve::contact_history::{ContactHistory, HistoryPoint, PointClosing, PointGuess};
-use crate::continuation::critical_curve::tolerances::{FOUND_ZERO, PASSED};
+use crate::continuation::critical_curve::history::branch_point_location::ModeBranch;
+use crate::continuation::critical_curve::history::contact_history::{
+    ContactHistory, HistoryPoint, PointClosing, PointGuess,
+};
+use crate::continuation::critical_curve::history::tolerances::{FOUND_ZERO, PASSED};
 use crate::continuation::path_state::resumable_state::constant_load;
 use crate::continuation::scene::Scene;
 use crate::mechanics::contact::{Mode, Reaction};
@@ -15,7 +17,7 @@ use crate::step::event_functions::{self, EventFunction};
 
 /// A quantity that is not negative where a path comes along the points of a history.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct PathCondition {
+pub(crate) struct PathCondition {
     /// Place of the point in the history.
     pub point: usize,
     pub about: ConditionSide,
@@ -32,7 +34,7 @@ impl PathCondition {
 
 /// Which quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum ConditionSide {
+pub(crate) enum ConditionSide {
     /// The event function where the path arrives.
     Arriving,
     /// The event function where the path leaves.
@@ -45,7 +47,7 @@ pub(super) enum ConditionSide {
 
 /// The scales of a scene, by which its states are dimensionless.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct StateScales {
+pub(crate) struct StateScales {
     length: f64,
     force: f64,
     loads: Vec<f64>,
@@ -53,7 +55,7 @@ pub(super) struct StateScales {
 
 /// The points of a history at one value of the parameter.
 #[derive(Debug, Clone)]
-pub(super) struct SolvedHistory {
+pub(crate) struct SolvedHistory {
     pub parameter: f64,
     pub points: Vec<PointGuess>,
     /// Modes at the critical point, with the directions of slip there.
@@ -71,7 +73,7 @@ pub(super) struct SolvedHistory {
 }
 
 /// The loading of all contacts of a scene in a stage.
-pub(super) fn scene_loading<'a>(scene: &'a Scene, stage: usize, held: &'a LoadPattern) -> Loading<'a> {
+pub(crate) fn scene_loading<'a>(scene: &'a Scene, stage: usize, held: &'a LoadPattern) -> Loading<'a> {
     Loading {
         structure: &scene.structure,
         contacts: &scene.contacts,
