@@ -6,7 +6,7 @@
 //! chapter 14). From there Newton's method finds the point (`singular_point`).
 
 use crate::algebra::SystemFactorisation;
-use crate::branching::bifurcation::locate::singular_point::SingularPoint;
+use crate::branching::bifurcation::locate::singular_point::LocatedSingularity;
 use crate::branching::bifurcation::locate::tolerances::{
     BRACKET_MARGIN, CLUSTER_WIDTH, CONTINUATION_COSINE, COUNTING_OFFSET, DISTANCE_FROM_PATH, ORTHOGONAL_REMAINDER,
     REAL_EIGENVALUE_TOLERANCE, START_DISTANCE, TEST_FUNCTION_TOLERANCE,
@@ -195,14 +195,19 @@ impl BorderedNewton<'_, '_> {
     }
 
     /// Newton's method for the singular point.
-    fn singular(&self, state: State, along: &Rate, motions: Vec<Rate>) -> Option<SingularPoint<'_>> {
+    fn singular(&self, state: State, along: &Rate, motions: Vec<Rate>) -> Option<LocatedSingularity<'_>> {
         let reach = self.right.place - self.left.place;
         let is_ahead = |state: &State| state.distance(self.start.state) > START_DISTANCE;
-        SingularPoint::near(self.system, state, (along, motions), (reach, &is_ahead))
+        LocatedSingularity::near(self.system, state, (along, motions), (reach, &is_ahead))
     }
 
     /// The singular point as the end of a step, where it continues the path.
-    fn located(&self, singular: &SingularPoint<'_>, before: Signature, change: SignatureChange) -> Option<Located> {
+    fn located(
+        &self,
+        singular: &LocatedSingularity<'_>,
+        before: Signature,
+        change: SignatureChange,
+    ) -> Option<Located> {
         let BorderedNewton { start, system, .. } = self;
         let place = singular.state.distance(start.state);
         if place <= START_DISTANCE || place > self.right.place {

@@ -25,7 +25,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 const MOST_ITERATIONS: usize = 12;
 
 /// A singular point.
-pub(crate) struct SingularPoint<'a> {
+pub(crate) struct LocatedSingularity<'a> {
     pub bordering: Bordering<'a>,
     pub state: State,
     /// `ψ_j F''(X_l, X_i)` for each `l`, with rows `j` and columns `i`.
@@ -38,7 +38,7 @@ pub(crate) struct SingularPoint<'a> {
     pub iterations: u64,
 }
 
-impl<'a> SingularPoint<'a> {
+impl<'a> LocatedSingularity<'a> {
     /// The point near a state on a path with this direction, at which motions near to those given become free.
     /// Corrections are at most `reach` long (dimensionless), and only states that `may_be` are passed.
     pub fn near(

@@ -2,7 +2,7 @@
 //! function of a contact where it changes. Also the point of the branch at which another branch crosses it, where the
 //! equations along the branch are singular.
 
-use crate::branching::bifurcation::locate::singular_point::SingularPoint;
+use crate::branching::bifurcation::locate::singular_point::LocatedSingularity;
 use crate::continuation::critical_curve::history::contact_history::PointGuess;
 use crate::continuation::critical_curve::history::tolerances::{
     ACCEPTED_CORRECTION, LARGEST_CORRECTION, POINT_ROUND_OFF, SAME_BRANCH, UNFOLDED,
@@ -99,7 +99,8 @@ impl ModeBranch<'_> {
         let size = 1.0 + guess.state.distance(self.anchor);
         let motion = guess.motion.clone().unwrap_or_else(|| any_motion(&guess.rate));
         let reach = LARGEST_CORRECTION * size;
-        let near = SingularPoint::near(&system, guess.state.clone(), (&guess.rate, vec![motion]), (reach, &|_| true))?;
+        let near =
+            LocatedSingularity::near(&system, guess.state.clone(), (&guess.rate, vec![motion]), (reach, &|_| true))?;
         (work.newton_iterations, work.factorisations) =
             (work.newton_iterations + near.iterations, work.factorisations + near.iterations);
         let corrected = newton::judged(&system, near.state.clone(), self.force_scale);

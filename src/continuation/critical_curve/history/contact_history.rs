@@ -12,6 +12,7 @@ use crate::continuation::path_state::passed_points::PassedPoint;
 use crate::continuation::path_state::resumable_state::constant_load;
 use crate::continuation::scene::Scene;
 use crate::mechanics::contact::{ContactPair, Mode, Sliding, all_continue};
+use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::result::increment::PointKind;
 use crate::step::event_functions::{self, EventFunction};
@@ -100,6 +101,18 @@ pub(crate) enum PointClosing {
     StageBegin,
     /// The equations along the branch are singular: another branch crosses it.
     Bifurcation,
+}
+
+impl PointClosing {
+    /// The event function that is zero; none at a bifurcation point. `None` where the stage begins, or has no such bound.
+    pub fn event(self, stage_ends: &[End]) -> Option<Option<EventFunction>> {
+        match self {
+            Self::Event(event) => Some(Some(event)),
+            Self::StageEnd(place) => Some(Some(EventFunction::End(*stage_ends.get(place)?))),
+            Self::Bifurcation => Some(None),
+            Self::StageBegin => None,
+        }
+    }
 }
 
 /// The state of a point and the directions of the path there, where Newton's method starts.

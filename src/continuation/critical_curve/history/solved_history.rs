@@ -192,12 +192,7 @@ impl SolvedHistory {
                 });
                 continue;
             }
-            let closing = match point.closing {
-                PointClosing::StageBegin => return None,
-                PointClosing::Event(event) => Some(event),
-                PointClosing::StageEnd(place) => Some(EventFunction::End(*stage_ends.get(place)?)),
-                PointClosing::Bifurcation => None,
-            };
+            let closing = point.closing.event(stage_ends)?;
             let branch = ModeBranch { loading, modes: &point.modes, anchor: &anchor, force_scale: history.force_scale };
             let is_last = place + 1 == history.points.len();
             let mut found = match (closing, plane.filter(|_| is_last)) {
