@@ -10,7 +10,7 @@ use crate::model::JobRequest;
 use crate::model::request::recorded_forces::{element_label, recorded_elements, recorded_supports};
 use crate::model::request::{Contact, Element, Record};
 use crate::output::csv::{Cells, ChosenCells, CsvRow};
-use crate::result::increment::{DeadLoadStability, Diagnostics, Increment, Instability, PointKind, Status};
+use crate::result::increment::{DeadLoadStability, Diagnostics, Increment, Instability, Point, PointKind, Status};
 use serde_json::Value;
 use std::collections::{HashMap, HashSet};
 
@@ -315,9 +315,7 @@ impl Table {
             line.count(count);
         }
         line.numbers(measure.map(Errors::values).as_ref().map_or(&[], <[f64; _]>::as_slice), Errors::NAMES.len());
-        line.flag(increment.point.better_direction);
-        line.count(increment.point.unexplored_modes);
-        line.flag(increment.point.degenerate);
+        write_directions(&increment.point, line);
         if self.has_stability {
             let stability = increment.stability;
             line.optional(stability.and_then(|found| found.negative_eigenvalues).map(|count| count as f64));
@@ -325,6 +323,13 @@ impl Table {
             line.word(stability.and_then(|found| found.instability).map_or("", instability));
         }
     }
+}
+
+/// What [`OF_DIRECTIONS`] names.
+fn write_directions(point: &Point, line: &mut impl Cells) {
+    line.flag(point.better_direction);
+    line.count(point.unexplored_modes);
+    line.flag(point.degenerate);
 }
 
 /// The counts of the solver's work, with the names of their columns.
