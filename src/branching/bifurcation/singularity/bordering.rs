@@ -37,7 +37,7 @@ pub(crate) struct Bordering<'a> {
 
 /// The factorised bordered matrix.
 enum Factors {
-    Sparse(SparseFactorisation),
+    Sparse(Box<SparseFactorisation>),
     Dense(LU<f64, Dyn, Dyn>),
 }
 
@@ -107,7 +107,7 @@ impl<'a> Bordering<'a> {
         }
         let transposed = matrix.transposed();
         let factors = SparseFactorisation::new(matrix, mode_factorisation::holdings(system))?;
-        let factors = Factors::Sparse(factors);
+        let factors = Factors::Sparse(Box::new(factors));
         let (right, tests) = null_vectors(&factors, size, corank)?;
         let forces: Vec<DVector<f64>> = columns.iter().map(|column| column * stiffness).collect();
         let left = by_symmetry(system, &right, &forces, &transposed, SYMMETRY_TEST_FACTOR * tests.amax());
