@@ -10,6 +10,8 @@ const MARGIN: f64 = 0.07;
 const WRITTEN_OUT: std::ops::RangeInclusive<i32> = -3..=4;
 /// Values this small relative to the largest count as zero.
 const ROUNDING: f64 = 1e-12;
+/// Values that differ by less than this part of the largest are the same.
+const SAME: f64 = 1e-9;
 /// Significant digits of a load in the legend.
 const DIGITS: usize = 6;
 
@@ -24,10 +26,25 @@ pub struct Axis {
 impl Axis {
     /// The axis for these values and 0, where every path starts; in this way proportions of loads are visible.
     pub fn showing(values: impl Iterator<Item = f64>, ticks: usize) -> Self {
-        let (low, high) = values.fold((0.0_f64, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
+        Self::between(values.fold((0.0, 0.0), |(low, high), value| (low.min(value), high.max(value))), ticks)
+    }
+
+    /// The axis for these values alone, for what is compared from value to value.
+    pub fn spanning(values: impl Iterator<Item = f64>, ticks: usize) -> Self {
+        let wide = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
+        let found = values.fold((f64::INFINITY, f64::NEG_INFINITY), wide);
+        Self::between(if found.0 <= found.1 { found } else { (0.0, 0.0) }, ticks)
+    }
+
+    fn between((low, high): (f64, f64), ticks: usize) -> Self {
         let largest = high.max(-low);
-        // An axis with a single value still has a length.
-        let (low, high) = if largest > 0.0 { (low, high) } else { (-1.0, 1.0) };
+        // An axis with a single value still has a length, and does not show round-off.
+        let (low, high) = match (high - low > SAME * largest, largest > 0.0) {
+            (true, _) => (low, high),
+            (false, true) => (low - 0.5 * low.abs(), high + 0.5 * high.abs()),
+            (false, false) => (-1.0, 1.0),
+        };
+        let largest = high.max(-low);
         let power = if largest > 0.0 { largest.log10().floor() as i32 } else { 0 };
         let exponent = if WRITTEN_OUT.contains(&power) { 0 } else { power };
         let margin = MARGIN * (high - low);
@@ -101,6 +118,17 @@ mod tests {
         assert_eq!(axis.tick(0.05), "0.05");
         assert_eq!(axis.tick(-1e-17), "0.00");
         assert_eq!(axis.named("load factor"), "load factor");
+    }
+
+    #[test]
+    fn values_that_are_compared_fill_their_axis() {
+        let axis = Axis::spanning([0.22, 0.26].into_iter(), 10);
+        assert!(axis.range.start > 0.2 && axis.range.end < 0.28, "{:?}", axis.range);
+        for value in [3.0, -3.0, 0.0, 3.0 + 1e-12] {
+            let axis = Axis::spanning([value, 3.0_f64.copysign(value) * value.abs().signum()].into_iter(), 10);
+            assert!(axis.range.end - axis.range.start > 1.0, "{value}: {:?}", axis.range);
+        }
+        assert!(Axis::spanning(std::iter::empty(), 10).range.start < 0.0);
     }
 
     #[test]

@@ -41,8 +41,8 @@ pub fn svg(found: &CurveFound) -> Result<String, PlotError> {
     if found.rows.is_empty() {
         return Err(PlotError::NoPoints);
     }
-    let across = Axis::showing(found.rows.iter().map(|row| row.value), TICKS);
-    let load = Axis::showing(found.rows.iter().map(|row| row.load_factor), TICKS);
+    let across = Axis::spanning(found.rows.iter().map(|row| row.value), TICKS);
+    let load = Axis::spanning(found.rows.iter().map(|row| row.load_factor), TICKS);
     let drawn = shapes::svg(CHART + LEGEND, HEIGHT, |sheet| {
         draw_chart(sheet, found, &across, &load)?;
         legend(sheet, found)

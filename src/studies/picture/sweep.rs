@@ -59,7 +59,7 @@ impl Across {
             let margin = 0.06 * (largest / least).log10();
             return Self::Logarithmic(least.log10() - margin..largest.log10() + margin);
         }
-        Self::Linear(Axis::showing(numbers.into_iter(), TICKS))
+        Self::Linear(Axis::spanning(numbers.into_iter(), TICKS))
     }
 
     fn range(&self) -> Range<f64> {
@@ -137,7 +137,7 @@ pub fn svg(found: &Found) -> Result<String, PlotError> {
     let Some(first) = found.variation.parameters.first().filter(|_| numbers().next().is_some()) else {
         return Err(PlotError::NothingFound { sought: upwards(found) });
     };
-    let (across, load) = (Across::of(&first.values), Axis::showing(numbers(), TICKS));
+    let (across, load) = (Across::of(&first.values), Axis::spanning(numbers(), TICKS));
     let lines = lines(found);
     let drawn = shapes::svg(CHART + LEGEND, HEIGHT, |sheet| {
         draw_chart(sheet, found, &lines, (&across, &load))?;
