@@ -499,6 +499,17 @@ pub fn judged(system: &ModeSystem<'_>, state: State, force_scale: f64) -> Correc
     judged_as_state(system, iterate, &[], force_scale)
 }
 
+/// As [`judged`]; `None` where the residual is larger than that of an accepted point by more than the rounding of the state's
+/// numbers. The residual is then that beyond the rounding.
+pub(crate) fn accepted(system: &ModeSystem<'_>, state: State, force_scale: f64) -> Option<Corrected> {
+    let mut corrected = judged(system, state, force_scale);
+    if corrected.residual > ACCEPTED_RESIDUAL {
+        let scale = corrected.force_scale.max(force_scale).max(NEGLIGIBLE_FORCE);
+        corrected.residual = left_by_rounding(system, &corrected.state, &corrected.left_over, scale)?;
+    }
+    Some(corrected)
+}
+
 /// As [`judged`], for an iterate and without the equations in some rows.
 pub(crate) fn judged_as_state(
     system: &ModeSystem<'_>,

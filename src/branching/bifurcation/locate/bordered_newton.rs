@@ -19,7 +19,6 @@ use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::budget;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
-use crate::step::corrector::tolerances::ACCEPTED_RESIDUAL;
 use crate::step::interpolation::{PlacedPoint, between, placed, unit};
 use crate::step::mode_step::{Reached, StepStart};
 use nalgebra::{DMatrix, DVector};
@@ -218,10 +217,7 @@ impl BorderedNewton<'_, '_> {
             return None;
         }
         let rate = singular.continued(&unit(&rate), CONTINUATION_COSINE)?;
-        let corrected = newton::judged(system, singular.state.clone(), start.force_scale);
-        if corrected.residual > ACCEPTED_RESIDUAL {
-            return None;
-        }
+        let corrected = newton::accepted(system, singular.state.clone(), start.force_scale)?;
         let corank = singular.bordering.left.len();
         let eigenvalues = match change {
             SignatureChange::Count { net, .. } => corank.min(net.unsigned_abs()),
