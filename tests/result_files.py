@@ -185,16 +185,24 @@ def check_piece(path, request, row):
         Check.equal("rotation", vtk_to_numpy(points.GetArray("rotation")), numpy.array(turned, dtype=float)[:, 0])
     if row.get("supports"):
         Check.equal("support_reaction", vtk_to_numpy(points.GetArray("support_reaction")), vectors(row["supports"]))
+        if points.GetArray("rotation") is not None and dimension == 2:
+            held = [(row["supports"].get(node) or [])[2:3] or [math.nan] for node in nodes]
+            Check.equal("support_moment", vtk_to_numpy(points.GetArray("support_moment")), numpy.array(held)[:, 0])
     status = numpy.full(len(nodes), 255)
     gap, reaction = numpy.full(len(nodes), math.nan), numpy.zeros((len(nodes), 3))
+    normal, slip = numpy.full(len(nodes), math.nan), numpy.full(len(nodes), math.nan)
     for contact in row["contacts"]:
         place, own = nodes.index(contact["node"]), STATUS[contact["status"]]
         status[place] = own if status[place] == 255 else max(status[place], own)
         gap[place] = numpy.fmin(gap[place], contact["gap"])
         reaction[place] += in_space(contact["reaction"])
+        normal[place] = numpy.fmax(normal[place], contact["normal_reaction"])
+        slip[place] = numpy.fmax(slip[place], math.sqrt(sum(part * part for part in contact["slip_total"])))
     Check.equal("contact_status", vtk_to_numpy(points.GetArray("contact_status")), status)
     Check.equal("gap", vtk_to_numpy(points.GetArray("gap")), gap)
     Check.equal("contact_reaction", vtk_to_numpy(points.GetArray("contact_reaction")), reaction)
+    Check.equal("normal_reaction", vtk_to_numpy(points.GetArray("normal_reaction")), normal)
+    Check.equal("slip_total", vtk_to_numpy(points.GetArray("slip_total")), slip)
     count = len(model["elements"])
     axial, forces = numpy.full(count, math.nan), numpy.full((count, 3), math.nan)
     for state in row["elements"]:
@@ -210,6 +218,9 @@ def check_piece(path, request, row):
     for name, value in (
         ("load_factor", row["load_factor"]), ("arc_length", row["arc_length"]), ("index", row["index"]),
         ("strain_energy", row["energy"]["strain"]), ("bifurcation", int(row["point"]["bifurcation"])),
+        ("better_direction", int(row["point"].get("better_direction", False))),
+        ("unexplored_modes", row["point"].get("unexplored_modes", 0)),
+        ("degenerate", int(row["point"].get("degenerate", False))),
     ):
         Check.equal(name, fields.GetArray(name).GetTuple1(0), float(value))
     Check.equal("applied_force", fields.GetArray("applied_force").GetTuple3(0), in_space(row["applied_forces"]))

@@ -207,7 +207,7 @@ class Program(unittest.TestCase):
         self.assertEqual(len(labels), len(set(labels)))
         axes.figure.savefig(io.BytesIO(), format="svg")
         again = arcslip.solve(block()).plot("block.x")
-        self.assertEqual(again.get_xlabel(), "block.x (m)")
+        self.assertEqual(again.get_xlabel(), "block.x [m]")
         self.assertEqual(again.get_legend_handles_labels()[1][:2], ["press", "pull"])
         with self.assertRaisesRegex(ValueError, "no number"):
             path.plot("event")

@@ -51,8 +51,8 @@ fn unrecorded_forces(request: &JobRequest) -> Vec<Warning> {
     let warning = |member: &str, what: &str, count: usize| Warning {
         pointer: format!("/analysis/record/{member}"),
         detail: format!(
-            "the forces of {count} {what} are not recorded: of more than {MAX_FORCES_UNASKED} they are where \"all\" or a list of \
-             them asks for them"
+            "the forces of {count} {what} are not recorded, as there are more than {MAX_FORCES_UNASKED}: ask for them by \
+             \"record\": {{\"{member}\": \"all\"}} in the analysis, or a list of them"
         ),
     };
     let elements = record.is_none_or(|record| record.elements.is_none()) && model.elements.len() > MAX_FORCES_UNASKED;

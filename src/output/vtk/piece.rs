@@ -96,10 +96,13 @@ impl Grid {
             write_texts(to, "node", &self.node_names, None)?;
             self.at_nodes("displacement", &increment.displacements).write(to, None)?;
             if self.has_rotations {
-                self.rotations(&increment.displacements).write(to, None)?;
+                self.rotations("rotation", &increment.displacements).write(to, None)?;
             }
             if self.has_supports {
                 self.at_nodes("support_reaction", &increment.supports).write(to, None)?;
+                if self.has_rotations {
+                    self.rotations("support_moment", &increment.supports).write(to, None)?;
+                }
             }
             if self.has_contacts {
                 self.contact_arrays(increment).iter().try_for_each(|array| array.write(to, None))?;
@@ -127,8 +130,9 @@ impl Grid {
         DataArray::numbers(name, 3, &all)
     }
 
-    /// About the axis out of the plane, or the rotation vector in space; not-a-number of nodes that have none.
-    fn rotations(&self, values: &NodalValues) -> DataArray {
+    /// What belongs to the rotations of nodes: about the axis out of the plane, or a vector in space; not-a-number of nodes
+    /// that have none.
+    fn rotations(&self, name: &'static str, values: &NodalValues) -> DataArray {
         let count = if self.dimension == 2 { 1 } else { 3 };
         let mut all = vec![f64::NAN; count * self.place_of_node.len()];
         for (node, components) in values.iter() {
@@ -137,19 +141,25 @@ impl Grid {
                 all[count * place..count * (place + 1)].copy_from_slice(turns);
             }
         }
-        DataArray::numbers("rotation", count, &all)
+        DataArray::numbers(name, count, &all)
     }
 
-    /// Of a node with several contacts: the status that holds it most, the smallest gap, the sum of the reactions.
-    fn contact_arrays(&self, increment: &Increment) -> [DataArray; 3] {
+    /// Of a node with several contacts: the status that holds it most, the smallest gap, the sum of the reactions, the largest
+    /// normal reaction and the largest slip in total.
+    fn contact_arrays(&self, increment: &Increment) -> [DataArray; 5] {
         let nodes = self.place_of_node.len();
         let mut statuses = vec![NO_CONTACT; nodes];
         let (mut gaps, mut reactions) = (vec![f64::NAN; nodes], vec![0.0; 3 * nodes]);
+        let (mut normals, mut slips) = (vec![f64::NAN; nodes], vec![f64::NAN; nodes]);
         for contact in &increment.contacts {
             let Some(place) = self.place_of_node.get(&*contact.node) else { continue };
             let status = number_of(contact.status);
             statuses[*place] = if statuses[*place] == NO_CONTACT { status } else { statuses[*place].max(status) };
             gaps[*place] = gaps[*place].min(contact.gap);
+            // The largest of numbers and of none is the number.
+            normals[*place] = normals[*place].max(contact.normal_reaction);
+            let slip = contact.slip_total.iter().map(|part| part * part).sum::<f64>().sqrt();
+            slips[*place] = slips[*place].max(slip);
             let own = &mut reactions[3 * place..3 * place + 3];
             own.iter_mut().zip(in_space(&contact.reaction)).for_each(|(sum, value)| *sum += value);
         }
@@ -157,6 +167,8 @@ impl Grid {
             DataArray::bytes("contact_status", statuses.into_iter()),
             DataArray::numbers("gap", 1, &gaps),
             DataArray::numbers("contact_reaction", 3, &reactions),
+            DataArray::numbers("normal_reaction", 1, &normals),
+            DataArray::numbers("slip_total", 1, &slips),
         ]
     }
 

@@ -29,7 +29,8 @@ def plain(value: Any) -> Any:
 
 
 class Model:
-    """A model that grows call by call; each call checks nothing but names, and the program checks the whole.
+    """A model that grows call by call. Nodes that are given by their place are looked up at once; the program checks the
+    whole, names included.
 
     `dimension` is 2 or 3. Quantities are in any consistent units; `units` labels axes and tables, such as
     `{"length": "m", "force": "kN"}`.

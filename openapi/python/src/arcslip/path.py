@@ -143,7 +143,7 @@ class Path:
             return "the path has no increments"
         known = list(dict.fromkeys(known for row in rows for known in row))
         text = f"no increment has {name!r}"
-        near = difflib.get_close_matches(str(name), known, 3)
+        near = difflib.get_close_matches(str(name), known, 3, 0.5)
         text += f"; did you mean {' or '.join(map(repr, near))}?" if near else f"; known are {', '.join(known[:12])}, ..."
         for what, member in (("elements/", "elements"), (".reaction.", "supports")):
             if what in str(name):

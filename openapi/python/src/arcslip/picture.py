@@ -13,6 +13,8 @@ MARKERS = {
     "jump": ("s", "at rest after a jump"),
 }
 FALLING = "falling, bifurcation points"
+#: The part of an axis from which on a stretch is seen.
+SEEN = 0.005
 #: Line of stretches that ascend or whose direction is the only one, and of descending stretches of bifurcation points.
 LINES = {False: "-", True: "--"}
 
@@ -46,7 +48,8 @@ def draw(path: Any, x: Optional[str], y: str, ax: Any, style: Dict[str, Any]) ->
             places = seen.setdefault(kind, ([], []))
             places[0].append(across[place])
             places[1].append(up[place])
-    if any(is_dashed for is_dashed, _, _ in stretches(path.increments)):
+    dashed = [(first, last) for is_dashed, first, last in stretches(path.increments) if is_dashed]
+    if any(is_seen(values[first:last], values) for first, last in dashed for values in (across, up)):
         # A line without points explains the dashes.
         ax.plot([], [], "--", color=color, label=None if FALLING in ax.get_legend_handles_labels()[1] else FALLING)
     named = set(ax.get_legend_handles_labels()[1])
@@ -61,6 +64,12 @@ def draw(path: Any, x: Optional[str], y: str, ax: Any, style: Dict[str, Any]) ->
     if name and not ax.get_title():
         ax.set_title(name)
     return ax
+
+
+def is_seen(part: List[Any], whole: List[Any]) -> bool:
+    """Whether a part of the values is long enough to be seen among all of them."""
+    own, every = ([value for value in values if value is not None] for values in (part, whole))
+    return bool(own) and max(own) - min(own) > SEEN * (max(every) - min(every))
 
 
 def next_color(ax: Any) -> Any:
@@ -93,7 +102,7 @@ def with_unit(path: Any, name: str) -> str:
     units = path.request["model"].get("units") or {}
     label = unit_of(name, units.get("length"), units.get("force"))
     words = name.replace("load_factor", "load factor")
-    return f"{words} ({label})" if label else words
+    return f"{words} [{label}]" if label else words
 
 
 def unit_of(name: str, length: Optional[str], force: Optional[str]) -> Optional[str]:

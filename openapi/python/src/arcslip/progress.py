@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any, Dict, Iterable, Iterator, Optional
 
 
@@ -13,7 +14,10 @@ def shown(increments: Iterable[Dict[str, Any]], most: Optional[int], progress: b
     try:
         from tqdm.auto import tqdm
     except ModuleNotFoundError:
-        raise ModuleNotFoundError("a progress bar needs tqdm: `pip install tqdm`; leave `progress` out without it") from None
+        # The path is being traced already, and is not given up for a bar.
+        warnings.warn("no progress bar is shown: it needs tqdm, `pip install tqdm`", stacklevel=2)
+        yield from increments
+        return
 
     with tqdm(total=most, unit=" increments") as bar:
         for increment in increments:

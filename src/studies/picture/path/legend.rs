@@ -11,6 +11,7 @@ pub const LISTED_EVENTS: usize = 200;
 /// Heights of rows, in pixels.
 const LINE_ROW: i32 = 20;
 const EVENT_ROW: i32 = 34;
+const MORE_ROW: i32 = 13;
 /// Columns, in pixels from the legend's left edge.
 const SAMPLE_END: i32 = 34;
 const MARK: i32 = 8;
@@ -19,6 +20,8 @@ const WORDS: i32 = 50;
 /// Characters that fit into a row, in plain and in faint text.
 const LONGEST: usize = 48;
 const LONGEST_FAINT: usize = 56;
+/// The most lines of what happens at a point.
+const MOST_LINES: usize = 3;
 
 const PLAIN: Lettering = Lettering { size: 12, color: &INK, bold: false, centred: false };
 const BOLD: Lettering = Lettering { bold: true, centred: true, ..PLAIN };
@@ -72,6 +75,22 @@ impl<'a> Legend<'a> {
     }
 }
 
+/// What happens at a point, in lines that fit into rows; what is left of a long text stands in the last one, and is cut there.
+fn lines_of(event: &Event) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in event.words.iter().flat_map(|words| words.split(' ')) {
+        let many = lines.len();
+        match lines.last_mut() {
+            Some(line) if many == MOST_LINES || line.chars().count() + 1 + word.chars().count() <= LONGEST_FAINT => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
 fn rest(count: usize, listed: usize, things: &str) -> Option<Row<'static>> {
     (count > listed).then(|| Row::Rest(format!("and {} more {things}", count - listed)))
 }
@@ -80,7 +99,7 @@ impl Row<'_> {
     fn height(&self) -> i32 {
         match self {
             Self::Stroke { .. } | Self::Rest(_) => LINE_ROW,
-            Self::Event { .. } => EVENT_ROW,
+            Self::Event { event, .. } => EVENT_ROW + MORE_ROW * (lines_of(event).len().max(1) - 1) as i32,
         }
     }
 
@@ -99,10 +118,9 @@ impl Row<'_> {
                 BOLD.write(sheet, at(LETTER, first), &event.label, LONGEST)?;
                 let words = format!("{}, load factor {load}", event.kind.words());
                 PLAIN.write(sheet, at(WORDS, first), &words, LONGEST)?;
-                match &event.words {
-                    Some(words) => FAINT.write(sheet, at(WORDS, second), words, LONGEST_FAINT),
-                    None => Ok(()),
-                }
+                (0..).zip(lines_of(event)).try_for_each(|(number, line)| {
+                    FAINT.write(sheet, at(WORDS, second + MORE_ROW * number), &line, LONGEST_FAINT)
+                })
             }
             Self::Rest(words) => PLAIN.write(sheet, at(WORDS, LINE_ROW / 2), words, LONGEST),
         }

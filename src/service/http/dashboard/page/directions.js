@@ -1,4 +1,4 @@
-// The directions at the chosen increment, or at the last bifurcation if none is chosen: their load rate and dissipation, and
+// The directions at the chosen increment, or at the last bifurcation or the end if none is chosen: their load rate and dissipation, and
 // which one the path takes. Another direction can be followed by a new job, which is drawn in the same plot.
 
 import { post } from "./api.js";
@@ -89,7 +89,8 @@ export class Directions {
       hasContacts ? element("td", {}, states(direction)) : null,
       element("td", { class: "number" }, short(direction.load_rate)),
       element("td", { class: "number" }, short(direction.dissipation_rate))));
-    const where = at === null ? [` at increment ${index}, the last bifurcation of the path`] : [` at increment ${index}`];
+    const isLastBifurcation = at === null && index === path.lastBifurcation();
+    const where = [` at increment ${index}${isLastBifurcation ? ", the last bifurcation of the path" : ""}`];
     fill(this.panel, element("h2", {}, "Directions", where),
       element("p", { class: "quiet" }, "Each is a way in which the path can go on from this point, in both senses of the load. ",
         at !== null ? null

@@ -12,6 +12,8 @@ import { kindWords, pointWords, short } from "./words.js";
 /** The most points in the list, and the most stages in the key. */
 const LISTED = 60;
 const STAGES = 20;
+/** The part of an axis from which on a stretch is seen. */
+const SEEN = 0.005;
 const SIGNS = { smooth_limit: "●", nonsmooth_limit: "◆", contact_change: "○", end: "■", jump: "▲", bifurcation: "◇" };
 
 /** A name for each curve. */
@@ -48,7 +50,7 @@ export function keyRows(curves) {
     const words = "the load falls: a load that only grows leaves the path here";
     rows.push({ words, colour: isAlone ? curves[0].colour : ink, dash: "dot" });
   }
-  if (paths.some(branches)) {
+  if (curves.some(showsBranches)) {
     rows.push({ words: "bifurcation points: more than one way on", colour: fromSheet("--bifurcation"), dash: "solid" });
   }
   if (paths.some((path) => movedPlaces(path).size > 0)) {
@@ -87,6 +89,18 @@ export function stagesOf(path) {
 function branches(path) {
   const moved = movedPlaces(path);
   return [...branchingPlaces(path)].some((place) => !moved.has(place + 1));
+}
+
+/** Whether a stretch of bifurcation points is long enough to be seen. */
+function showsBranches({ path, xs, ys }) {
+  if (!branches(path)) return false;
+  const places = [...branchingPlaces(path)].filter((place) => place + 1 < path.index.length);
+  return [xs, ys].some((values) => {
+    const [low, high] = values.reduce(([least, most], value) =>
+      (typeof value === "number" ? [Math.min(least, value), Math.max(most, value)] : [least, most]), [Infinity, -Infinity]);
+    const gone = places.reduce((sum, place) => sum + Math.abs((values[place + 1] ?? 0) - (values[place] ?? 0)), 0);
+    return gone > SEEN * (high - low);
+  });
 }
 
 function falls(path) {

@@ -11,6 +11,8 @@ const NAMEABLE = 150;
 /** The most friction cones, and the most arrows of one kind. */
 const CONES = 60;
 const ARROWS = 120;
+/** The same in a large picture. */
+const FEW_ARROWS = 40;
 /** Arrows whose lengths differ by less, relatively, are alike. */
 const ALIKE = 0.01;
 
@@ -48,14 +50,15 @@ export class Detail {
 
   /** The largest of so many `[key, force]` that their arrows can be told apart. */
   arrows(forces, what) {
-    if (forces.length <= ARROWS) return forces;
-    this.leave(`Of ${forces.length} ${what} the ${ARROWS} largest have arrows, of equal ones some everywhere`);
+    const most = this.isLarge ? FEW_ARROWS : ARROWS;
+    if (forces.length <= most) return forces;
+    this.leave(`Of ${forces.length} ${what} the ${most} largest have arrows, of equal ones some everywhere`);
     const sizes = forces.map(([, force]) => Math.hypot(...force));
-    const least = sizes.toSorted((a, b) => b - a)[ARROWS - 1];
+    const least = sizes.toSorted((a, b) => b - a)[most - 1];
     const isAlike = (_, place) => Math.abs(sizes[place] - least) <= ALIKE * least;
     const larger = forces.filter((_, place) => sizes[place] > (1 + ALIKE) * least);
     const alike = forces.filter(isAlike);
-    const part = (ARROWS - larger.length) / alike.length;
+    const part = (most - larger.length) / alike.length;
     return [...larger, ...alike.filter((_, place) => part >= 1 || Math.floor((place + 1) * part) > Math.floor(place * part))];
   }
 }

@@ -7,7 +7,7 @@ import { RowsView } from "./rows-view.js";
 import { addressOfJob, openJobs } from "./state.js";
 import { placeWords, valueWords } from "./sweep-values.js";
 import { headed } from "./units.js";
-import { plainWords, short, verbatim } from "./words.js";
+import { plainWords, verbatim } from "./words.js";
 
 /** Milliseconds between drawings while rows come in. */
 const AGAIN = 500;
@@ -16,7 +16,16 @@ const OVERLAID = 40;
 /** Runs that stand in the table; the others are in the files. */
 const LISTED = 500;
 
-const shown = (value) => (typeof value === "number" ? Number(short(value)) : value ?? null);
+/** Digits that tell runs from one another whose values are close. */
+const precise = (value) => Number(value.toPrecision(9));
+const shown = (value) => (typeof value === "number" ? precise(value) : value ?? null);
+
+/** The order of two runs by their values, the first one first. */
+function compared(own, other) {
+  const place = own.findIndex((value, at) => value !== other[at]);
+  if (place < 0) return 0;
+  return typeof own[place] === "number" && typeof other[place] === "number" ? own[place] - other[place] : 0;
+}
 
 export class SweepView extends RowsView {
   constructor(section, told) {
@@ -65,14 +74,16 @@ export class SweepView extends RowsView {
       xaxis: { ...axis(names[0]), ...(isNumbers ? {} : { type: "category" }) }, yaxis: axis(verbatim(told)),
       showlegend: traces.length > 1,
     });
+    // By their values, since runs that refine a sweep come last.
+    const listed = isNumbers ? rows.toSorted((a, b) => compared(a.values, b.values)) : rows;
     const drawn = rows.filter(({ last_index: last }) => last !== null).slice(0, OVERLAID);
     fill(this.listing,
       element("div", { class: "actions" }, button(`Draw the paths of ${drawn.length === rows.length ? "all" : `the first ${drawn.length}`} runs`,
         () => openJobs(drawn.map(({ job }) => job)), { "data-key": "overlay", id: "overlay" })),
-      table(["run", ...names, ...responses.map((name) => headed(name, unitOf(name))), "limit load", "kind", "at increment", "ends", ""], rows.slice(0, LISTED).map((row) => [
+      table(["run", ...names, ...responses.map((name) => headed(name, unitOf(name))), "first limit point: load factor", "kind", "at increment", "ends", ""], listed.slice(0, LISTED).map((row) => [
         row.run, ...row.values.map((value) => (typeof value === "number" ? value : valueWords(value))),
         ...responses.map((name) => shown(row.responses?.[name])),
-        row.first_limit ? Number(short(row.first_limit.load_factor)) : null, row.first_limit ? plainWords(row.first_limit.kind) : null,
+        row.first_limit ? precise(row.first_limit.load_factor) : null, row.first_limit ? plainWords(row.first_limit.kind) : null,
         row.first_limit?.increment ?? null, row.error ?? plainWords(row.stop_reason ?? row.status),
         element("a", { href: addressOfJob(row.job) }, "path")])),
       rows.length > LISTED ? element("p", { class: "quiet" }, `The first ${LISTED} of ${rows.length}; the files have all of them.`) : null);
