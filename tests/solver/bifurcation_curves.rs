@@ -88,6 +88,35 @@ fn branches_that_a_parameter_parts_are_not_followed_as_if_they_met() {
     }
 }
 
+/// Where the apex buckles at the height of its feet, it buckles before and past it at once; below the height
+/// `sqrt(2)` it does not buckle at all.
+#[test]
+fn a_curve_turns_back_where_two_bifurcation_points_meet() {
+    let settings = json!({"parameter": "/model/nodes/apex/1", "range": [1.3, 2.1], "step": 0.1});
+    let found = curve(&tall_truss(2.0), PointKind::SmoothBifurcation, 0, &settings);
+    println!("{:?}", found.summary);
+    let meetings: Vec<&CurveRow> = changes(&found)
+        .into_iter()
+        .filter(|row| row.event.as_deref().is_some_and(|event| event.contains("meet")))
+        .collect();
+    let [meeting] = meetings[..] else { panic!("{meetings:?}") };
+    let event = meeting.event.as_deref().expect("an event");
+    let told: f64 =
+        event["two bifurcation points meet at ".len()..].split(' ').next().expect("a value").parse().expect("a number");
+    close(told, 2.0_f64.sqrt(), 1e-8, "where they meet");
+    let mut signs = [0, 0];
+    for row in &found.rows {
+        let (load, apex) = buckling(row.value);
+        let y = row.displacements.get("apex").expect("the apex")[1] + row.value;
+        let sign = y.signum();
+        signs[usize::from(sign < 0.0)] += 1;
+        close(y, sign * apex, 1e-8, "where it buckles");
+        close(row.load_factor, sign * load, 1e-8, "the load at which it buckles");
+    }
+    println!("{signs:?} on either side");
+    assert!(signs.iter().all(|count| *count >= 7), "{signs:?}");
+}
+
 /// The limit load of the imperfect truss comes to the buckling load of the perfect one, with a cusp over the imperfection.
 #[test]
 fn limit_loads_over_an_imperfection_have_a_cusp_at_the_bifurcation_point() {

@@ -15,7 +15,7 @@ use crate::continuation::critical_curve::tolerances::{
     SHORTEST_STEP, STEP_GROWTH, STEP_ROUND_OFF, TURNING_STEP, UNLOCATED_STEPS,
 };
 use crate::continuation::critical_curve::traced_paths::TracedPaths;
-use crate::continuation::critical_curve::turning_point::{self, TurningPoint};
+use crate::continuation::critical_curve::turning_point::{self, MeetingBifurcations, TurningPoint};
 use crate::continuation::scene::Scene;
 use crate::model::input::limits::MAX_CURVE_POINTS;
 use crate::resources::cancel::CancelFlag;
@@ -212,6 +212,9 @@ impl<'a> CriticalCurve<'a> {
             if let Some(cusp) = self.cusp_ahead(walk) {
                 return self.pass_cusp(walk, cusp, paths, accept);
             }
+            if let Some(meeting) = self.meeting_ahead(walk) {
+                return self.turn_back_at_meeting(walk, meeting, accept);
+            }
             if !is_shortest {
                 return walk.shorten();
             }
@@ -372,6 +375,37 @@ impl<'a> CriticalCurve<'a> {
         }
         let why = format!("{event}, and the paths past it have no limit point that comes from there");
         ControlFlow::Break(Stopped::Ended(DirectionEnd::Lost { value: at, why }))
+    }
+
+    /// The bifurcation point that the last one of the curve meets in the step that failed, if there is one.
+    fn meeting_ahead(&mut self, walk: &Walk) -> Option<MeetingBifurcations> {
+        let is_close = walk.step <= TURNING_STEP * self.range.step;
+        let ahead = (walk.sense, 2.0 * walk.step);
+        is_close.then(|| turning_point::meeting(self.family, &walk.place, ahead, &mut self.work))?
+    }
+
+    /// Goes on along the other one of two bifurcation points that meet.
+    fn turn_back_at_meeting(
+        &mut self,
+        walk: &mut Walk,
+        MeetingBifurcations { value, other: (scene, other) }: MeetingBifurcations,
+        accept: AcceptPoint<'_>,
+    ) -> ControlFlow<Stopped> {
+        let at = critical_point::in_words(value);
+        if !other.broken().is_empty() {
+            let why = format!("two bifurcation points meet at {at}, and a condition of the path ends there");
+            return ControlFlow::Break(Stopped::Ended(DirectionEnd::Lost { value: walk.place.here.parameter, why }));
+        }
+        walk.step = (value - other.parameter).abs().max(self.shortest());
+        (walk.sense, walk.has_turned, walk.taken) = (-walk.sense, true, None);
+        (walk.place.here, walk.place.before) = (other, None);
+        let event = format!("two bifurcation points meet at {at} and vanish; the curve turns back along the other one");
+        flow(self.emit(
+            &scene,
+            &walk.place,
+            PointNote { event: Some(event), codimension_two: true, from_path: false },
+            accept,
+        ))
     }
 
     /// The critical point at a value, found from the last ones of the curve; `None` where it is not the same one.

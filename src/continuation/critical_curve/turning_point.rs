@@ -12,6 +12,7 @@
 use crate::continuation::critical_curve::curve_position::{CurvePosition, SceneFamily, extrapolated};
 use crate::continuation::critical_curve::history::contact_history::PointGuess;
 use crate::continuation::critical_curve::history::solved_history::SolvedHistory;
+use crate::continuation::critical_curve::history::tolerances::UNFOLDED;
 use crate::continuation::critical_curve::tolerances::{PARAMETER_ROUND_OFF, SMALLEST_RETURN, TURNING_WIDTH};
 use crate::continuation::scene::Scene;
 use crate::mechanics::equations::closing_equation::HyperplaneEquation;
@@ -25,6 +26,10 @@ const MOST_ITERATIONS: usize = 20;
 const FIRST_DIFFERENCE: f64 = 0.05;
 /// Planes that are tried past the last point, each twice as far as the one before.
 const MOST_PLANES: usize = 12;
+/// First distance at which the other one of two bifurcation points is sought, in units of the last chord.
+const FIRST_OTHER: f64 = 0.25;
+/// Part of the way to where two bifurcation points meet, by which it is approached.
+const CLOSER: f64 = 0.9;
 /// Parabolas through the last three points, whose top is the turning point.
 const MOST_PARABOLAS: usize = 6;
 
@@ -76,6 +81,69 @@ pub(super) fn turn(
     let at = at?;
     let is_ahead = sense * (at.1.parameter - last) >= 0.0;
     is_ahead.then_some(TurningPoint { at, past })
+}
+
+/// Where a curve of bifurcation points turns back: two of them meet and vanish.
+pub(super) struct MeetingBifurcations {
+    /// The value at which they meet.
+    pub value: f64,
+    /// The other one at the last value of the curve.
+    pub other: (Scene, SolvedHistory),
+}
+
+/// The bifurcation point that the last one of a curve meets ahead, at most so far in the parameter. Close to the place where
+/// they meet, both are as far from it, by the root of the distance in the parameter.
+pub(super) fn meeting(
+    family: SceneFamily<'_>,
+    place: &CurvePosition,
+    (sense, reach): (f64, f64),
+    work: &mut Work,
+) -> Option<MeetingBifurcations> {
+    let CurvePosition { history, here, before } = place;
+    let before = before.as_ref().filter(|_| history.kind == PointKind::SmoothBifurcation)?;
+    let stage = history.points.last()?.stage;
+    let scene = family(here.parameter).ok()?;
+    let own = here.scales.express(here.critical(), stage, &scene);
+    let chord = before.scales.express(before.critical(), stage, &scene).chord(&own);
+    let mut solve = |like: &SolvedHistory, value: f64, state: State| {
+        let scene = family(value).ok()?;
+        let mut guesses = like.points.clone();
+        let guess = guesses.last_mut()?;
+        *guess = PointGuess { from: state.clone(), state, ..guess.clone() };
+        let found = SolvedHistory::of(history, &scene, value, &guesses, work)?;
+        (found.unfolding <= UNFOLDED).then_some((scene, found))
+    };
+    let is_other = |solved: &SolvedHistory| solved.critical().distance(&own) > SMALLEST_RETURN * chord.size();
+    let mut distances = (0..MOST_PLANES).map(|power| FIRST_OTHER * f64::from(1_u32 << power));
+    let other = distances
+        .find_map(|far| solve(here, here.parameter, own.advanced(&chord, far)).filter(|(_, found)| is_other(found)))?;
+    let other_before = solve(before, before.parameter, other.1.critical().advanced(&chord, 1.0))?.1;
+    // The square of their distance falls to zero linearly, the more nearly the closer they are.
+    let square = |one: &SolvedHistory, other: &SolvedHistory| one.critical().distance(other.critical()).powi(2);
+    let mut first = (before.parameter, square(before, &other_before));
+    let mut pair = (here.clone(), other.1.clone());
+    let mut value = here.parameter;
+    for _ in 0..MOST_PARABOLAS {
+        let last = (pair.0.parameter, square(&pair.0, &pair.1));
+        let ahead = last.1 * (last.0 - first.0) / (first.1 - last.1);
+        let found = last.0 + ahead;
+        if !(0.0..=reach).contains(&(sense * (found - here.parameter))) || first.1 <= last.1 {
+            return None;
+        }
+        let change = (found - value).abs();
+        value = found;
+        if change <= PARAMETER_ROUND_OFF * value.abs().max(reach) {
+            break;
+        }
+        let closer = last.0 + CLOSER * ahead;
+        let middle = pair.0.critical().advanced(&pair.0.critical().chord(pair.1.critical()), 0.5);
+        let near = |one: &SolvedHistory| middle.advanced(&middle.chord(one.critical()), (1.0 - CLOSER).sqrt());
+        let (one, two) = (near(&pair.0), near(&pair.1));
+        let Some(one) = solve(&pair.0, closer, one) else { break };
+        let Some(two) = solve(&pair.1, closer, two) else { break };
+        (first, pair) = (last, (one.1, two.1));
+    }
+    Some(MeetingBifurcations { value, other })
 }
 
 /// The critical point in the plane across the last chord, at so many lengths of it from the last point.
