@@ -32,7 +32,7 @@ pub struct Arguments {
     combine: Option<CombineName>,
     /// Tell a value at a place of each path, such as `tip at limit=tip.x@first_limit` or `load at 2=load_factor@tip.x=2`,
     /// instead of those in the file; the first one is drawn. Repeat the option for further ones.
-    #[arg(long, value_name = "NAME=COLUMN@PLACE", value_parser = response)]
+    #[arg(long, value_name = "NAME=COLUMN@PLACE[@STAGE]", value_parser = response)]
     response: Vec<(String, serde_json::Value)>,
     /// Trace up to N further runs, each in the middle of two values of the only parameter between which the first response,
     /// or the first limit load, changes most.
@@ -71,9 +71,10 @@ fn replacement(argument: &str) -> Result<(String, Vec<serde_json::Value>), Strin
 
 /// A response as a file has it. Its name ends at the first `=`, and the place is a name, or a column and a number.
 fn response(argument: &str) -> Result<(String, serde_json::Value), String> {
-    let expected = "NAME=COLUMN@PLACE is expected";
+    let expected = "NAME=COLUMN@PLACE or NAME=COLUMN@PLACE@STAGE is expected";
     let (name, rest) = argument.split_once('=').filter(|(name, _)| !name.is_empty()).ok_or(expected)?;
     let (value, at) = rest.split_once('@').ok_or(expected)?;
+    let (at, stage) = at.split_once('@').map_or((at, None), |(at, stage)| (at, Some(stage)));
     let at = match at.rsplit_once('=') {
         Some((column, number)) => {
             let number: f64 = number.parse().map_err(|_| format!("`{number}` is not a number"))?;
@@ -81,7 +82,11 @@ fn response(argument: &str) -> Result<(String, serde_json::Value), String> {
         }
         None => at.into(),
     };
-    Ok((name.to_owned(), serde_json::json!({"value": value, "at": at})))
+    let mut response = serde_json::json!({"value": value, "at": at});
+    if let Some(stage) = stage {
+        response["stage"] = stage.into();
+    }
+    Ok((name.to_owned(), response))
 }
 
 pub fn run(arguments: &Arguments) -> Outcome {

@@ -41,6 +41,8 @@ class Model:
             raise ValueError(f"the dimension is 2 or 3, not {dimension!r}")
         self.dimension = int(dimension)
         self.name = name
+        if units is not None and not isinstance(units, Mapping):
+            raise TypeError(f'units are labels by name, such as {{"length": "m", "force": "kN"}}; found {units!r}')
         self.units = None if units is None else dict(units)
         self._nodes: Dict[str, List[float]] = {}
         self._names: List[str] = []

@@ -69,6 +69,7 @@ function nameField({ id, select, large, typed }, chosen) {
   const prepare = () => {
     const group = groupOf();
     input.disabled = !group;
+    input.hidden = !group;
     input.setAttribute("aria-label", group ? `name, one of ${group.names.length}` : "name");
     propose();
   };

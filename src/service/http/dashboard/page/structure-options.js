@@ -47,7 +47,7 @@ export class StructureOptions {
       button("Fit", () => this.exaggerate(String(fitted())), {
         id: "fit-exaggeration", title: "Choose a factor at which the displacements are seen",
       }), element("label", {}, this.names, " names of nodes"), ["loads", "reactions", "obstacles"].map(shown),
-      element("label", { title: "Colours from the largest force of this increment, in place of that of the path so far" }, this.ownScale, " colours of this increment"),
+      element("label", { title: "Colours from the largest force of this increment, in place of the largest of all increments that have been shown" }, this.ownScale, " colours of this increment"),
       this.diagrams, this.larger(), this.problem);
   }
 
