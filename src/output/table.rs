@@ -215,8 +215,8 @@ impl Table {
         names.extend(["external_work", "strain_energy", "dissipated", "released"].map(str::to_owned));
         names.extend(["elapsed_s", "residual", "complementarity", "energy_error", "error_estimate"].map(str::to_owned));
         names.extend(counts(&Diagnostics::default()).map(|(name, _)| name.to_owned()));
-        names.extend(Errors::NAMES.map(|name| format!("measure.{name}")));
         names.extend(OF_DIRECTIONS.map(str::to_owned));
+        names.extend(Errors::NAMES.map(|name| format!("measure.{name}")));
         if self.has_stability {
             names.extend(OF_STABILITY.map(str::to_owned));
         }
@@ -314,8 +314,8 @@ impl Table {
         for (_, count) in counts(diagnostics) {
             line.count(count);
         }
-        line.numbers(measure.map(Errors::values).as_ref().map_or(&[], <[f64; _]>::as_slice), Errors::NAMES.len());
         write_directions(&increment.point, line);
+        line.numbers(measure.map(Errors::values).as_ref().map_or(&[], <[f64; _]>::as_slice), Errors::NAMES.len());
         if self.has_stability {
             let stability = increment.stability;
             line.optional(stability.and_then(|found| found.negative_eigenvalues).map(|count| count as f64));

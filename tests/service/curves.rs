@@ -109,7 +109,7 @@ async fn mistakes_of_a_curve_are_told_at_their_place() {
         (json!({"parameter": at, "range": [0.2, 0.9], "step": 1e-9}), "/step", "10000 steps"),
         (json!({"parameter": at, "range": [0.2, 0.9], "limit_point": 0}), "/limit_point", "from 1"),
         (json!({"parameter": at, "range": [0.2, 0.9], "limit_point": 1, "increment": 3}), "", "leave one out"),
-        (json!({"parameter": at, "range": [0.2, 0.9], "increment": 1}), "/increment", "no limit point"),
+        (json!({"parameter": at, "range": [0.2, 0.9], "increment": 1}), "/increment", "cannot be followed"),
         (json!({"parameter": at, "range": [0.2, 0.9], "increment": 999}), "/increment", "not stored"),
         (json!({"parameter": "/model/name", "range": [0.2, 0.9]}), "/parameter", "a number is expected"),
         (json!({"parameter": "/analysis/max_increments", "range": [1, 9]}), "/parameter", "`/model/`"),

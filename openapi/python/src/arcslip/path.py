@@ -122,10 +122,10 @@ class Path:
         row.update(external_work=energy["external_work"], strain_energy=energy["strain"], dissipated=energy["dissipated"])
         row["released"] = energy.get("released", 0.0)
         row.update(increment.get("diagnostics") or {})
-        row.update((f"measure.{name}", value) for name, value in (increment.get("measure") or {}).items())
         row["better_direction"] = point.get("better_direction", False)
         row["unexplored_modes"] = point.get("unexplored_modes", 0)
         row["degenerate"] = point.get("degenerate", False)
+        row.update((f"measure.{name}", value) for name, value in (increment.get("measure") or {}).items())
         for name, value in (increment.get("stability") or {}).items():
             row[f"stability.{name}"] = value
         return row
