@@ -91,3 +91,9 @@ pub(crate) const WAY_MARGIN: f64 = 1.1;
 /// Part of a step down to which gaps from curved obstacles are compared with the way between them. An obstacle thinner
 /// than this part of a step's motion may be missed; the value bounds the effort to as many gaps.
 pub(crate) const SHORTEST_PART: f64 = 1.0 / 64.0;
+
+/// Arc length (dimensionless) within which a node that slips in space may leave its obstacle in one step, however its direction
+/// turns. The slip on this way is not resolved: it is shorter than this, and of its direction no more is known. The value is
+/// ten times the error 1e-9 that an increment may have, as the slip is a part of the way, and its direction is wrong by a
+/// part.
+pub(crate) const LAST_SLIP: f64 = 1e-8;

@@ -33,6 +33,7 @@ mod jammed_corners;
 mod judged;
 mod jumps;
 mod keep_all;
+mod lift_offs;
 mod limit_curves;
 mod limits_near_critical_friction;
 mod mac_mpec;

@@ -17,6 +17,7 @@ use crate::mechanics::problem::state::Rate;
 use crate::step::corrector::cached_factorisation::CachedFactorisation;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::event_functions::EventFunction;
+use crate::step::lift_off;
 use crate::step::mode_step::{Attempt, Reached, Refused, StepStart};
 
 /// Largest number of shorter steps tried where a change of signature cannot be resolved.
@@ -182,7 +183,13 @@ fn end_of_step(
         // Where the changes cannot be treated together the step has to end at the first of them.
         return joined.map(AttemptEnd::Joined).ok_or(Refused::Apart);
     }
-    let tried = attempt(trace, start, step, sought, tries, work)?;
+    let tried = match attempt(trace, start, step, sought, tries, work) {
+        Ok(tried) => tried,
+        Err(refused) => {
+            let leaves = lift_off::ahead(start, step, (ends, load_sign), work);
+            return leaves.map(AttemptEnd::AtEvent).ok_or(refused);
+        }
+    };
     if may_join && let Some(first) = simultaneous::changes_to_join(start, &tried) {
         let joined = simultaneous::join_changes(start, &first, &tried, work);
         tries.joined = Some(joined.is_some());
@@ -190,7 +197,9 @@ fn end_of_step(
             return Ok(AttemptEnd::Joined(joined));
         }
     }
-    start.stop_at_event(tried, ends, simultaneous_limit_points::locate, work).map(AttemptEnd::AtEvent)
+    let ended = start.stop_at_event(tried, ends, simultaneous_limit_points::locate, work);
+    let ended = ended.or_else(|refused| lift_off::ahead(start, step, (ends, load_sign), work).ok_or(refused));
+    ended.map(AttemptEnd::AtEvent)
 }
 
 /// The extent of the mode: to the next of several changes if it is near, to a predicted change, or over a whole step.
