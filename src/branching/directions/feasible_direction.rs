@@ -60,11 +60,8 @@ pub struct DirectionChoice {
 #[derive(Debug, Clone, Copy)]
 pub enum PriorMotion<'a> {
     Incoming(Incoming<'a>),
-    /// A stage begins: the load is to rise; ties go to the motion in the direction of the load pattern. Where the stage
-    /// before ended at a limit point, `free` is the motion of the degrees of freedom there.
-    StageStart {
-        free: Option<&'a [f64]>,
-    },
+    /// A stage begins: the load is to rise; ties go to the motion in the direction of the load pattern.
+    StageStart,
 }
 
 /// Settings and scales of a decision.

@@ -8,41 +8,22 @@
 use crate::branching::bifurcation::branch_directions::tolerances::COINCIDENCE_COSINE;
 use crate::branching::bifurcation::branch_directions::{SecondOrderFindings, SingularPoint, in_each_mode};
 use crate::branching::directions::feasible_direction::{DirectionChoice, PriorMotion, mark_retrace, sign_of};
-use crate::branching::selection::tolerances::NO_WORK;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
 
-/// Whether directions of first order at the end of a slip may be mere round-off, or a direction is missing; or whether a stage
-/// begins at a limit point under a load that does no work on the motion there: the equations then have a second null vector,
-/// and first order tells no branch.
+/// Whether directions of first order at the end of a slip may be mere round-off, or a direction is missing.
 pub(crate) fn is_asked(
     loading: Loading<'_>,
     state: &State,
     options: &[DirectionChoice],
     before: PriorMotion<'_>,
 ) -> bool {
-    let incoming = match before {
-        PriorMotion::Incoming(incoming) => incoming,
-        PriorMotion::StageStart { free } => return free.is_some_and(|free| does_no_work(loading, free)),
-    };
+    let PriorMotion::Incoming(incoming) = before else { return false };
     // An odd count indicates that a direction is missing, or that there is one too many.
     let is_odd = options.len() % 2 == 1;
     let is_doubtful =
         |option: &DirectionChoice| (is_odd || !option.is_tried) && incoming.is_stopped_in(loading, state, option);
     incoming.is_singular || options.iter().any(is_doubtful)
-}
-
-/// Whether the load of a stage does no work on a motion of the degrees of freedom.
-fn does_no_work(loading: Loading<'_>, motion: &[f64]) -> bool {
-    let pattern = loading.pattern;
-    // What else a stage may move or press does work in general.
-    if pattern.moves_boundary() || loading.structure.has_following_loads() {
-        return false;
-    }
-    let free = || loading.structure.freedom_of.iter().map(|freedom| (pattern.forces[*freedom], motion[*freedom]));
-    let work: f64 = free().map(|(force, moved)| force * moved).sum();
-    let size = |of: fn((f64, f64)) -> f64| free().map(|pair| of(pair).powi(2)).sum::<f64>().sqrt();
-    work.abs() <= NO_WORK * size(|(force, _)| force) * size(|(_, moved)| moved)
 }
 
 /// The directions at second order; `None` where they are not available, or are less conclusive than at first order.

@@ -48,7 +48,7 @@ pub fn list(
 ) -> (Vec<DirectionChoice>, FoundDirections) {
     let incoming = match before {
         PriorMotion::Incoming(incoming) => Some(incoming),
-        PriorMotion::StageStart { .. } => None,
+        PriorMotion::StageStart => None,
     };
     let mut found = directions(loading, state, standings, incoming, rules.effort);
     let candidates = std::mem::take(&mut found.candidates);
@@ -128,7 +128,7 @@ fn taken_of(
             }
             incoming.rate
         }
-        PriorMotion::StageStart { .. } => {
+        PriorMotion::StageStart => {
             if found.unexplored > 0 && open.iter().all(|&index| options[index].load_sign <= 0.0) {
                 // The load is to rise, and the mode in which it does may be among those not examined.
                 open.clear();

@@ -15,8 +15,3 @@ pub(crate) const MOTION_TIE_TOLERANCE: f64 = 1e-9;
 /// The direction of such a remainder depends on units, axes and steps, so that a smaller bound would let rounding
 /// decide; the error 1e-9 that an increment may have limits a larger one.
 pub(crate) const RESTING_MOTION: f64 = 1e-9;
-
-/// Work of the forces of a stage on a motion, relative to the sizes of both, up to which they do none. The motion at a limit
-/// point is accurate to about 1e-9 times what the path bends there; forces that do as little work as this drive a motion
-/// that is a hundred million times as fast as they are, which no step resolves.
-pub(crate) const NO_WORK: f64 = 1e-8;

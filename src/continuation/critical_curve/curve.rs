@@ -206,6 +206,7 @@ impl<'a> CriticalCurve<'a> {
         let Some(solved) = self.near(&walk.place, &scene, value) else {
             if walk.step <= TURNING_STEP * self.range.step
                 && let Some(turn) = turning_point::turn(self.family, &walk.place, walk.sense, &mut self.work)
+                && (self.range.from..=self.range.to).contains(&turn.at.1.parameter)
             {
                 return self.turn_back(walk, turn, accept);
             }

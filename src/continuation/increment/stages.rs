@@ -1,6 +1,6 @@
 //! The beginning and the end of a stage, and the transition to the next.
 
-use crate::branching::directions::feasible_direction::{self, DirectionChoice, PriorMotion, sign_of};
+use crate::branching::directions::feasible_direction::{self, DirectionChoice, PriorMotion};
 use crate::branching::directions::trial_step::later_sign;
 use crate::branching::selection::selection_rule::{self, Decision};
 use crate::continuation::path_state::event_descriptions::describe_start;
@@ -59,9 +59,8 @@ pub(crate) fn begin_stage(trace: &mut PathTrace<'_>) -> Increment {
 /// taken. Where the load is to rise and cannot, a jump begins.
 pub(crate) fn depart(trace: &mut PathTrace<'_>, point: &mut Point) -> (Vec<DirectionChoice>, Option<usize>) {
     let state = &trace.at.here.state;
-    let before = PriorMotion::StageStart { free: trace.at.free_motion.as_deref() };
-    let mut decision = selection_rule::decide(trace.loading(), state, &trace.standings(state), before, trace.rules());
-    trace.at.free_motion = None;
+    let mut decision =
+        selection_rule::decide(trace.loading(), state, &trace.standings(state), PriorMotion::StageStart, trace.rules());
     if trace.rules().load_rises {
         rise(trace, &mut decision);
     }
@@ -142,8 +141,7 @@ pub(crate) fn next_stage(trace: &mut PathTrace<'_>) -> bool {
     at.hold(trace.scene);
     at.stage += 1;
     at.here.state.load = 0.0;
-    let at_limit = at.here.rate.take().filter(|rate| sign_of(rate.load) == 0.0);
-    at.free_motion = at_limit.map(|rate| rate.displacement);
+    at.here.rate = None;
     at.here.signature = None;
     (at.here.before, at.here.apart) = (None, None);
     at.counts = StageCounts::default();

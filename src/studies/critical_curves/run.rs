@@ -12,13 +12,17 @@ use crate::result::increment::Increment;
 use crate::studies::critical_curves::row::{CurveRow, CurveSummary};
 use std::ops::ControlFlow;
 
+/// Largest error of a state, of equilibrium and of contact, with which a point belongs to a curve.
+const MEASURE_BAR: f64 = 1e-9;
+
 /// Receives the points as they are found; breaks to end the curve.
 pub type AcceptRow<'a> = &'a mut dyn FnMut(CurveRow) -> ControlFlow<()>;
 
 /// Follows a curve; every point is passed to `accept`, and none is kept. The findings are reproducible, bit for bit.
 ///
 /// # Errors
-/// Mistakes of the model at its own value; a path without this limit point, or one that cannot be followed.
+/// Mistakes of the model at its own value; a path without this limit point, or one that cannot be followed; a point that the
+/// measure refuses, after those that it does not.
 pub fn run(curve: &ParameterCurve, cancel: &CancelFlag, accept: AcceptRow<'_>) -> Result<CurveSummary, InputErrors> {
     let request_at = |value: f64| {
         let mut request = curve.request(value)?;
@@ -33,11 +37,17 @@ pub fn run(curve: &ParameterCurve, cancel: &CancelFlag, accept: AcceptRow<'_>) -
         (Some(index), _) => CurveStart::Increment(index),
         (None, asked) => CurveStart::LimitPoint(asked.unwrap_or(1)),
     };
+    let mut off = None;
     let mut take = |point: CurvePoint| {
         // The point was found with this model.
         let Ok(request) = request_at(point.value) else { return ControlFlow::Break(()) };
         let mut judge = Judge::new(&request, point.displacement_scale, &point.load_scales);
         let measure = judge.judge_state(&point.increment, &point.stage_ends);
+        let largest = measure.largest_of_state();
+        if largest > MEASURE_BAR || largest.is_nan() {
+            off = Some((point.value, largest));
+            return ControlFlow::Break(());
+        }
         let Increment { index, stage, load_factor, displacements, contacts, point: kind, .. } = point.increment;
         accept(CurveRow {
             index,
@@ -55,6 +65,14 @@ pub fn run(curve: &ParameterCurve, cancel: &CancelFlag, accept: AcceptRow<'_>) -
         })
     };
     let report = CriticalCurve::new(&family, range, cancel.clone()).follow(start, &mut take);
+    if let Some((value, largest)) = off {
+        let detail = format!(
+            "the point of the curve at {} is off the measure by {largest:.1e}, more than {MEASURE_BAR:.0e}: the history of \
+             the point does not hold for this parameter; sweep it instead",
+            in_words(value)
+        );
+        return Err(InputErrors(vec![InputError::new("/curve/parameter", detail)]));
+    }
     let CurveReport { end, paths, newton_iterations, .. } = report.map_err(refused)?;
     let (ends_below, ends_above, complete) = match end {
         CurveEnd::Complete { below, above } => (Some(told(&below)), Some(told(&above)), true),
@@ -78,10 +96,13 @@ fn told(end: &DirectionEnd) -> String {
             format!("the curve does not go on past {}: {why}", in_words(*value))
         }
         DirectionEnd::OffPath { value, last, end } => {
-            let since = last.map_or_else(String::new, |last| format!("between {} and ", in_words(last)));
+            let since = last.map_or_else(
+                || "before it".to_owned(),
+                |last| format!("between {} and {}", in_words(last), in_words(*value)),
+            );
             format!(
-                "{}; a path of its own at {} has no such point: {since}there contacts change between the points of \
-                 the curve, and its points past that are on no path; start it anew from a value past it",
+                "{}; a path of its own at {} has no such point: {since} the path changes in a way that the equations of \
+                 the curve do not see, and the points of the curve past that are on no path; start it anew from there",
                 told(end),
                 in_words(*value)
             )
