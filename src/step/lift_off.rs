@@ -1,12 +1,20 @@
 //! Where a node that slips in space leaves its obstacle.
 //!
-//! The direction of such a slip follows `N d' = ...`: the less the node is pressed, the faster the direction may turn, by a
-//! power of the normal reaction `N` that is no whole number, so that no step in the mode of slip passes to `N = 0`. The state
-//! there does not depend on the direction: it is the point of the branch without this contact at which the gap is zero.
+//! Along the path the traction `-μ N d` of a slip in the direction `d` balances the other forces at the node, `f`. Across `d`
+//! the rates of both are
+//!
+//! ```text
+//! μ N d' = f'  (its part across d)
+//! ```
+//!
+//! so that the direction may turn the faster, the smaller the normal reaction `N` is: as a power of `N` that is no whole number,
+//! which no step in the mode of slip follows to `N = 0`. The state there does not depend on the direction: it is the point of
+//! the branch without this contact at which the gap is zero.
 
 use crate::mechanics::contact::{Mode, Reaction, Sliding};
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_end_criteria::End;
+use crate::mechanics::problem::state::Rate;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
 use crate::step::event_functions::{EventFunction, EventZero};
@@ -50,6 +58,9 @@ pub(crate) fn ahead(
         start.event_functions(ends, load_sign).into_iter().filter(|one| is_other(one)).collect();
     let is_first = (0.0..=longest).contains(&distance) && start.passed(&others, &reached).is_empty();
     reached.event = Some(leaves);
+    // The error of the path so far stays.
+    reached.drift = start.drift.cloned();
+    reached.error_estimate = start.drift.map_or(0.0, Rate::size);
     is_first.then_some(reached)
 }
 
