@@ -6,6 +6,8 @@ const MARK = 6;
 const APART = 14;
 /** The size of a plot that has not been drawn yet, in pixels. */
 const USUAL = { width: 600, height: 400 };
+/** With more letters than these all stand above their points: they are too close to be kept apart. */
+const MOST = 200;
 /** What lies under a letter costs so much: another letter, a mark, a place past the edge. */
 const ON_LETTER = 8;
 const ON_MARK = 3;
@@ -22,6 +24,7 @@ const AROUND = [
  * left and one on the right have ranges of their own.
  */
 export function placeLetters(lines, lettered, place) {
+  if (lettered.reduce((sum, { text }) => sum + text.length, 0) > MOST) return;
   const { width, height } = place?.clientWidth > 0 ? { width: place.clientWidth, height: place.clientHeight } : USUAL;
   const across = scale(lines.map(({ x }) => x), width, false);
   const up = Object.fromEntries(["y", "y2"].map((axis) =>

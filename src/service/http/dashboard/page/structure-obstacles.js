@@ -19,6 +19,8 @@ const ALONE = 0.3;
 const ROWS_OF_FEET = 50;
 /** The part of the distance to the feet on another obstacle that a part of an obstacle may take. */
 const NOT_HALF = 0.4;
+/** With more contacts than these the distances between their feet are not compared. */
+const NEIGHBOURS = 300;
 /** The part of the extent within which an obstacle is in the picture. */
 const NEAR = 0.75;
 /** The length of the arrow of an obstacle's motion, as a part of the extent. */
@@ -64,7 +66,7 @@ export class ObstacleDrawing {
 
   /** How far the part around these feet may go so that it does not cover that of a neighbour: each goes not quite half way. */
   room(name, feet) {
-    if (feet.length > ROWS_OF_FEET) return Infinity;
+    if (feet.length > ROWS_OF_FEET || this.model.contacts.length > NEIGHBOURS) return Infinity;
     const others = (this.model.contacts ?? []).filter(({ obstacle }) => obstacle !== name && obstacle in this.model.obstacles)
       .map(({ node }) => this.model.nodes[node]);
     let nearest = Infinity;
