@@ -207,6 +207,30 @@ fn the_load_at_which_a_slider_slips_is_followed_over_friction() {
     }
 }
 
+/// A block of weight 1 that is pulled along a floor slips at a pull of `(mu - n) / (1 + mu n)`, where the floor's normal is
+/// `(n, 1)`: the frames of the contact turn with the parameter.
+#[test]
+fn a_block_slips_on_a_floor_that_is_tilted_more_and_more() {
+    let request: JobRequest = serde_json::from_value(json!({"model": {
+        "dimension": 2, "nodes": {"block": [0, 0]},
+        "elements": [{"kind": "spring", "nodes": ["block"], "stiffness": [[2, 0], [0, 0]]}],
+        "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}},
+        "contacts": [{"node": "block", "obstacle": "floor", "friction": 0.3}],
+        "stages": [
+            {"name": "press", "forces": {"block": [0, -1]}, "until": {"load_above": 1}},
+            {"name": "pull", "forces": {"block": [1, 0]}, "until": {"load_above": 2}},
+        ],
+    }}))
+    .expect("a request");
+    let settings = json!({"parameter": "/model/obstacles/floor/normal/0", "range": [-0.25, 0.25], "step": 0.05});
+    let found = curve(&request, PointKind::ContactChange, 0, &settings);
+    assert!(found.rows.len() >= 11, "{}", found.rows.len());
+    for row in &found.rows {
+        let tilt = row.value;
+        close(row.load_factor, (0.3 - tilt) / (1.0 + 0.3 * tilt), 1e-12, "the pull at which it slips");
+    }
+}
+
 /// Random scenes: every point of a curve of contact changes or bifurcation points is on a path of its own.
 #[test]
 fn contact_changes_and_bifurcations_of_random_scenes_agree_with_paths() {

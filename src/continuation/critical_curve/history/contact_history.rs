@@ -7,12 +7,14 @@
 //! the same points are found again by Newton's method, without the path between them.
 
 use crate::continuation::critical_curve::history::solved_history::scene_loading;
-use crate::continuation::critical_curve::history::tolerances::ZERO_AT_POINT;
+use crate::continuation::critical_curve::history::tolerances::{OUT_OF_PLANE, ZERO_AT_POINT};
 use crate::continuation::path_state::passed_points::PassedPoint;
 use crate::continuation::path_state::resumable_state::constant_load;
 use crate::continuation::scene::Scene;
+use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size};
 use crate::mechanics::contact::{ContactPair, Mode, Sliding, all_continue};
 use crate::mechanics::equations::stage_end_criteria::End;
+use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::result::increment::PointKind;
 use crate::step::event_functions::{self, EventFunction};
@@ -89,6 +91,48 @@ pub(crate) struct HistoryPoint {
     pub load_signs: [f64; 2],
     /// Event functions of the mode after the point that are zero at it.
     pub touching: Vec<EventFunction>,
+}
+
+impl HistoryPoint {
+    /// The same point with its directions of slip in the tangent planes at a state, where another model has turned them.
+    pub fn in_frames(&self, loading: Loading<'_>, state: &State) -> Self {
+        let turned = |modes: &[Mode]| -> Vec<Mode> {
+            let in_plane = |(contact, mode): (usize, &Mode)| match *mode {
+                Mode::Slip { direction } => {
+                    let normal = loading.frame(contact, state).normal;
+                    Mode::Slip { direction: unit_part(&direction, &normal) }
+                }
+                other => other,
+            };
+            modes.iter().enumerate().map(in_plane).collect()
+        };
+        Self { modes: turned(&self.modes), leaving_modes: turned(&self.leaving_modes), ..self.clone() }
+    }
+}
+
+impl PointGuess {
+    /// The same guess with its tangential reactions in the tangent planes at its state, where another model has turned them.
+    pub fn in_frames(&self, loading: Loading<'_>) -> Self {
+        let mut guess = self.clone();
+        for (contact, reaction) in guess.state.reactions.iter_mut().enumerate() {
+            let normal = loading.frame(contact, &self.state).normal;
+            reaction.tangential = tangential_part(&reaction.tangential, &normal);
+        }
+        guess
+    }
+}
+
+/// The direction of a vector without its part along a normal; the vector itself where nothing of it is left, or nothing is taken.
+fn unit_part(vector: &Vector, normal: &Vector) -> Vector {
+    let part = tangential_part(vector, normal);
+    let length = size(&part);
+    if part == *vector || length == 0.0 { *vector } else { scaled(&part, 1.0 / length) }
+}
+
+/// A vector without its part along a normal; the vector itself where that part is round-off.
+fn tangential_part(vector: &Vector, normal: &Vector) -> Vector {
+    let along = dot(vector, normal);
+    if along.abs() <= OUT_OF_PLANE * size(vector) { *vector } else { add(vector, -along, normal) }
 }
 
 /// What is zero at a point of the history.

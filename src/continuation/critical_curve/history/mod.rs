@@ -7,6 +7,7 @@
 //! | `branch_point_location` | one of them, by Newton's method along the branch of its mode |
 //! | `solved_history` | all of them at one value of the parameter, and the conditions of the path |
 //! | `taken_directions` | whether the path takes the directions of the history at its points |
+//! | `tolerances` | |
 
 mod branch_point_location;
 pub(crate) mod contact_history;

@@ -178,6 +178,7 @@ impl SolvedHistory {
                 return None;
             }
             let loading = scene_loading(scene, point.stage, &held);
+            let (point, guess) = (&point.in_frames(loading, &guess.state), &guess.in_frames(loading));
             let stage_ends = &scene.stages[point.stage].ends;
             if point.closing == PointClosing::StageBegin {
                 let at = Solved { place, point, loading, force_scale: history.force_scale };

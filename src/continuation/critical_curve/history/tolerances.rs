@@ -38,3 +38,6 @@ pub(crate) const SAME_DIRECTION: f64 = 1e-6;
 /// The point asked for and the one on a path with all of its contact changes resolved coincide within this (dimensionless):
 /// a limit point is flat.
 pub(crate) const ASKED_POINT: f64 = 1e-4;
+
+/// Part of a vector along a normal up to which the vector is tangential: round-off of a vector that is.
+pub(crate) const OUT_OF_PLANE: f64 = 1e-12;
