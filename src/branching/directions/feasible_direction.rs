@@ -60,8 +60,12 @@ pub struct DirectionChoice {
 #[derive(Debug, Clone, Copy)]
 pub enum PriorMotion<'a> {
     Incoming(Incoming<'a>),
-    /// A stage begins: the load is to rise; ties go to the motion in the direction of the load pattern.
-    StageStart,
+    /// A stage begins: the load is to rise; ties go to the motion in the direction of the load pattern. Where the stage
+    /// before ended at a limit point and the forces do no work on the motion there, ties go to that motion, `free`, over
+    /// all degrees of freedom.
+    StageStart {
+        free: Option<&'a [f64]>,
+    },
 }
 
 /// Settings and scales of a decision.

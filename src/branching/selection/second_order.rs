@@ -11,14 +11,19 @@ use crate::branching::directions::feasible_direction::{DirectionChoice, PriorMot
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
 
-/// Whether directions of first order at the end of a slip may be mere round-off, or a direction is missing.
+/// Whether directions of first order at the end of a slip may be mere round-off, or a direction is missing; or whether a stage
+/// begins at a limit point under a load that does no work on the motion there: the equations then have a second null vector,
+/// and first order tells no branch.
 pub(crate) fn is_asked(
     loading: Loading<'_>,
     state: &State,
     options: &[DirectionChoice],
     before: PriorMotion<'_>,
 ) -> bool {
-    let PriorMotion::Incoming(incoming) = before else { return false };
+    let incoming = match before {
+        PriorMotion::Incoming(incoming) => incoming,
+        PriorMotion::StageStart { free } => return free.is_some(),
+    };
     // An odd count indicates that a direction is missing, or that there is one too many.
     let is_odd = options.len() % 2 == 1;
     let is_doubtful =

@@ -48,7 +48,7 @@ pub fn list(
 ) -> (Vec<DirectionChoice>, FoundDirections) {
     let incoming = match before {
         PriorMotion::Incoming(incoming) => Some(incoming),
-        PriorMotion::StageStart => None,
+        PriorMotion::StageStart { .. } => None,
     };
     let mut found = directions(loading, state, standings, incoming, rules.effort);
     let candidates = std::mem::take(&mut found.candidates);
@@ -120,7 +120,7 @@ fn taken_of(
     let mut open: Vec<usize> = (0..options.len()).filter(|&index| !options[index].retrace).collect();
     let mut push = loading.pattern.forces.clone();
     push.iter_mut().zip(&loading.pattern.supports).for_each(|(sum, value)| *sum += value);
-    let pushed = Rate { displacement: push, load: 0.0, reactions: Vec::new() };
+    let mut goal = Rate { displacement: push, load: 0.0, reactions: Vec::new() };
     let previous = match before {
         PriorMotion::Incoming(incoming) => {
             if rules.load_rises && open.iter().any(|&index| options[index].load_sign >= 0.0) {
@@ -128,7 +128,10 @@ fn taken_of(
             }
             incoming.rate
         }
-        PriorMotion::StageStart => {
+        PriorMotion::StageStart { free } => {
+            if let Some(free) = free {
+                goal.displacement.copy_from_slice(free);
+            }
             if found.unexplored > 0 && open.iter().all(|&index| options[index].load_sign <= 0.0) {
                 // The load is to rise, and the mode in which it does may be among those not examined.
                 open.clear();
@@ -136,7 +139,7 @@ fn taken_of(
             if open.iter().any(|&index| options[index].load_sign > 0.0) {
                 open.retain(|&index| options[index].load_sign > 0.0);
             }
-            &pushed
+            &goal
         }
     };
     let taken = preferred(&options, previous, rules, |index| open.contains(&index));

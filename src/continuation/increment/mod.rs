@@ -3,6 +3,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `stages` | the beginning and the end of a stage, and the transition to the next |
+//! | `limit_point_start` | the motion that is free where a stage begins at a limit point |
 //! | `step_control` | the length of a step |
 //! | `step_attempt` | one attempt of a step |
 //! | `acceptance` | acceptance of a point as the present one, and its row |
@@ -13,6 +14,7 @@
 //! All of them work on one `PathTrace` (`continuation::path_state::path_context`), which owns the state.
 
 pub(crate) mod acceptance;
+pub(crate) mod limit_point_start;
 pub(crate) mod mpec_increments;
 pub(crate) mod mpec_verification;
 pub(crate) mod point_classification;

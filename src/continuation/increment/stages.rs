@@ -3,6 +3,7 @@
 use crate::branching::directions::feasible_direction::{self, DirectionChoice, PriorMotion};
 use crate::branching::directions::trial_step::later_sign;
 use crate::branching::selection::selection_rule::{self, Decision};
+use crate::continuation::increment::limit_point_start;
 use crate::continuation::path_state::event_descriptions::describe_start;
 use crate::continuation::path_state::motion::{JumpCause, JumpProgress};
 use crate::continuation::path_state::path_context::{Emitted, PathTrace};
@@ -59,8 +60,11 @@ pub(crate) fn begin_stage(trace: &mut PathTrace<'_>) -> Increment {
 /// taken. Where the load is to rise and cannot, a jump begins.
 pub(crate) fn depart(trace: &mut PathTrace<'_>, point: &mut Point) -> (Vec<DirectionChoice>, Option<usize>) {
     let state = &trace.at.here.state;
-    let mut decision =
-        selection_rule::decide(trace.loading(), state, &trace.standings(state), PriorMotion::StageStart, trace.rules());
+    let free =
+        trace.at.free_motion.as_deref().filter(|motion| limit_point_start::does_no_work(trace.loading(), motion));
+    let before = PriorMotion::StageStart { free };
+    let mut decision = selection_rule::decide(trace.loading(), state, &trace.standings(state), before, trace.rules());
+    trace.at.free_motion = None;
     if trace.rules().load_rises {
         rise(trace, &mut decision);
     }
@@ -136,7 +140,9 @@ pub(crate) fn next_stage(trace: &mut PathTrace<'_>) -> bool {
         trace.end(StopReason::StagesCompleted);
         return false;
     }
+    let free_motion = limit_point_start::free_motion(trace);
     let at = &mut trace.at;
+    at.free_motion = free_motion;
     at.reached.push(at.here.state.load);
     at.hold(trace.scene);
     at.stage += 1;

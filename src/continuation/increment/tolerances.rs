@@ -124,3 +124,8 @@ pub(crate) const CREEPING_SHARE: f64 = 1e-3;
 /// A step that ends before this fraction of its attempted length does not let the next be longer. The fraction is a
 /// heuristic for effort: a short part of a step says little about a longer step in the mode that follows.
 pub(crate) const SMALLEST_COMPLETED_SHARE: f64 = 0.5;
+
+/// Work of the forces of a stage on a motion, relative to the sizes of both, up to which they do none. The motion at a limit
+/// point is accurate to about 1e-9 times what the path bends there; forces that do as little work as this drive a motion
+/// that is a hundred million times as fast as they are, which no step resolves.
+pub(crate) const NO_WORK: f64 = 1e-8;

@@ -231,6 +231,7 @@ fn accept(trace: &mut PathTrace<'_>, moved: Moved, motion: JumpProgress) {
         visited: std::mem::take(&mut before.visited),
         counts: before.counts,
         begun: None,
+        free_motion: None,
         listed: None,
         followed: None,
         totals,

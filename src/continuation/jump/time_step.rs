@@ -140,6 +140,7 @@ fn begin(trace: &PathTrace<'_>) -> Progress {
         stage_over: false,
         visited: VisitedStates::default(),
         begun: None,
+        free_motion: None,
         listed: None,
         followed: None,
         counts: StageCounts::default(),

@@ -49,6 +49,10 @@ pub(crate) struct Progress {
     pub visited: VisitedStates,
     /// The state in which the stage began and its first direction.
     pub begun: Option<(State, Rate)>,
+    /// The motion, over all degrees of freedom, along which the structure moved without a change of its load where the stage
+    /// before ended, at a limit point.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub free_motion: Option<Vec<f64>>,
     /// Directions listed with the present point.
     pub listed: Option<Listed>,
     /// The start of a path that follows another's direction.
@@ -133,6 +137,7 @@ impl Progress {
             counts: StageCounts::default(),
             visited: VisitedStates::default(),
             begun: None,
+            free_motion: None,
             listed: None,
             followed: None,
             motion: None,

@@ -5,6 +5,7 @@ use crate::common::paths::{close, trace, typed};
 use arcslip::model::JobRequest;
 use arcslip::result::increment::PointKind;
 use arcslip::result::stop_reason::StopReason;
+use itertools::iproduct;
 use serde_json::{Value, json};
 
 /// Von Mises' truss under these stages, which jumps where its path ends.
@@ -32,6 +33,35 @@ fn a_stage_that_begins_at_a_limit_point_jumps_at_once() {
     let (increments, report) = trace(&truss(&json!([first, back])));
     assert_eq!(report.stop_reason, StopReason::StagesCompleted);
     assert!(increments.iter().all(|one| one.point.kind != PointKind::Jump));
+}
+
+/// A horizontal force does no work on the vertical motion that is free at the limit point: first order tells no direction. With
+/// the place `(x, y)` of the apex and the bars' length `l`, where `l^3 = L` at the limit point, the energy has there
+/// `E_yyy = 6 y/(L l^2)` and `E_xxy = -2 y (2 - y^2)/(L l^2)`: two branches cross, `dy = +-sqrt((2 - y^2)/3) dx`, and on each the
+/// load rises to one side. Of these two directions the arc length goes on with the motion that was free, and the load alone
+/// towards the stable branch, whatever the axes are.
+#[test]
+fn a_stage_whose_load_does_no_work_on_the_motion_of_a_limit_point_has_the_directions_of_second_order() {
+    let first = json!({"name": "up", "forces": {"apex": [0, -1]}, "until": {"limit_points": 1}});
+    for (force, control) in iproduct!([[1.0, 0.0], [-1.0, 0.0]], ["path", "load"]) {
+        let on = json!({"name": "on", "forces": {"apex": force}, "until": {"load_above": 0.05}, "control": control});
+        let analysis = json!({"arc_length": {"initial": 1e-3}, "record": {"stability": true}});
+        let (increments, report) = trace(&typed(von_mises(&json!([first, on]), &analysis)));
+        let start = increments.iter().find(|one| &*one.stage == "on").expect("a start");
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{:?}", start.point);
+        let directions = start.directions.as_ref().expect("directions");
+        assert_eq!(directions.len(), 4);
+        let square = 1.25_f64.cbrt() - 1.0;
+        let slope = ((2.0 - square) / 3.0).sqrt();
+        assert_eq!(directions.iter().filter(|one| one.load_rate > 0.0).count(), 2);
+        assert!(start.point.bifurcation);
+        let next = &increments[start.index as usize + 1];
+        let [x, y] = [0, 1].map(|axis| next.displacements["apex"][axis] - start.displacements["apex"][axis]);
+        close(y.abs() / x.abs(), slope, 20.0 * next.step, "the slope of a branch");
+        assert!(x * force[0] > 0.0 && next.step < 2e-3, "{x}, {}", next.step);
+        let negative = next.stability.as_ref().expect("stability").negative_eigenvalues;
+        assert_eq!((y < 0.0, negative), if control == "path" { (true, Some(1)) } else { (false, Some(0)) });
+    }
 }
 
 #[test]

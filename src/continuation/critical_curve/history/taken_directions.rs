@@ -57,7 +57,7 @@ fn is_taken(
         _ => None,
     };
     let before = match point.closing {
-        PointClosing::StageBegin => PriorMotion::StageStart,
+        PointClosing::StageBegin => PriorMotion::StageStart { free: None },
         _ => PriorMotion::Incoming(Incoming { modes: Some(&point.modes), stopped, ..Incoming::along(&at.rate) }),
     };
     let (analysis, force_scale) = (&scene.analysis, history.force_scale);
