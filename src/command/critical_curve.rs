@@ -41,7 +41,8 @@ pub struct Arguments {
 fn range(argument: &str) -> Result<[f64; 2], String> {
     let numbers: Result<Vec<f64>, _> = argument.split(',').map(str::parse).collect();
     match numbers.map_err(|error| format!("`{argument}`: {error}"))?[..] {
-        [from, to] => Ok([from, to]),
+        [from, to] if from.is_finite() && to.is_finite() => Ok([from, to]),
+        [from, to] => Err(format!("found {from} and {to}; two finite numbers are expected")),
         _ => Err("FROM,TO is expected".to_owned()),
     }
 }

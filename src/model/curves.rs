@@ -30,7 +30,8 @@ impl ParameterCurve {
     /// Reads a curve and checks its model at its own value.
     ///
     /// # Errors
-    /// As for [`decode::decode`]; a place without a number; a range without the model's own value; too many steps.
+    /// As for [`decode::decode`]; a place without a number; a range without the model's own value, or with an end that
+    /// makes no model; too many steps.
     pub fn read(text: &[u8]) -> Result<Self, InputErrors> {
         let settings = decode::curve(text)?;
         let one = |pointer: &str, detail: String| InputErrors(vec![InputError::new(pointer, detail)]);
@@ -67,6 +68,9 @@ impl ParameterCurve {
         let request = curve.request(start)?;
         refuse_analysis(&request)?;
         curve.dimension = request.model.dimension;
+        for end in curve.settings.range {
+            curve.request(end).map_err(|errors| without_model(end, &errors))?;
+        }
         Ok(curve)
     }
 
@@ -110,6 +114,14 @@ fn own_value(document: &Value, places: &[String]) -> Result<f64, String> {
         }
     }
     own.ok_or_else(|| "no place of the model has this pointer".to_owned())
+}
+
+/// The mistake that one of the ends of the range is.
+fn without_model(end: f64, errors: &InputErrors) -> InputErrors {
+    let found = errors.0.first().map_or_else(String::new, |first| format!("`{}`: {}", first.pointer, first.detail));
+    let detail =
+        format!("with {end} the model is refused: {found}; a range is expected all of whose values make a model");
+    InputErrors(vec![InputError::new("/curve/range", detail)])
 }
 
 /// What a curve cannot follow.

@@ -127,6 +127,21 @@ fn a_change_is_passed_by_a_path_of_many_short_steps() {
 
 /// A curve that is cancelled, at a point or while a path is compared with it, says nothing of its ends.
 #[test]
+fn a_range_with_an_end_that_makes_no_model_is_refused_at_once() {
+    let request = scene_file("arch-type-truss");
+    for (parameter, range, found) in [
+        ("/model/contacts/0/friction", [-1.0, 1.0], "with -1 the model is refused"),
+        ("/model/dimension", [1.0, 3.0], "with 1 the model is refused"),
+        ("/model/elements/0/axial_stiffness", [0.0, 1.0], "with 0 the model is refused"),
+    ] {
+        let refused = curve_of(&request, &json!({"parameter": parameter, "range": range}));
+        let errors = refused.expect_err(parameter).0;
+        assert_eq!(errors[0].pointer, "/curve/range");
+        assert!(errors[0].detail.starts_with(found), "{}", errors[0].detail);
+    }
+}
+
+#[test]
 fn a_cancelled_curve_claims_no_end() {
     let settings = json!({"parameter": "/model/contacts/*/friction", "range": [0, 2], "step": 0.1});
     let curve = curve_of(&scene_file("arch-type-truss"), &settings).expect("a curve");
