@@ -6,6 +6,7 @@ mod backup;
 mod check;
 mod convert;
 mod critical_curve;
+mod export;
 mod health;
 mod openapi;
 mod options;
@@ -44,6 +45,7 @@ enum Command {
     Sweep(sweep::Arguments),
     Continue(critical_curve::Arguments),
     Check(check::Arguments),
+    Export(export::Arguments),
     Convert(convert::Arguments),
     Scenes(scenes::Arguments),
     Verify(verify::Arguments),
@@ -70,6 +72,7 @@ fn run_command(command: Command, matches: &ArgMatches) -> Outcome {
         Command::Sweep(arguments) => arguments.bounds.within(|| sweep::run(&arguments)),
         Command::Continue(arguments) => arguments.bounds.within(|| critical_curve::run(&arguments)),
         Command::Check(arguments) => arguments.bounds.within(|| check::run(&arguments)),
+        Command::Export(arguments) => export::run(&arguments),
         Command::Convert(arguments) => convert::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),

@@ -3,14 +3,12 @@
 use crate::command::options::{bounds, input};
 use crate::command::output::outcome::{Failure, Outcome, tell};
 use crate::command::output::path_file::{Format, PathFile};
+use crate::command::output::path_picture::PathPicture;
 use crate::command::output::picture_file::PictureFile;
 use crate::command::output::written::{folders_exist, is_standard_output, one_on_standard_output};
-use crate::model::{JobRequest, Model};
 use crate::resources::cancel::CancelFlag;
-use crate::result::increment::Increment;
 use crate::result::stop_reason;
 use crate::service::jobs::{PathSolver, Solver};
-use crate::studies::picture::path::{Against, svg};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
@@ -31,8 +29,8 @@ pub struct Arguments {
     /// Draw load factor against a displacement here, as SVG or PNG by the extension; `-` is standard output.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// The displacement to draw, such as `tip.x`. Default: the largest one.
-    #[arg(long, value_name = "NODE.COMPONENT", requires = "plot")]
+    /// What to draw, such as `tip.x` or `elements/0.axial_force`. Default: the largest displacement.
+    #[arg(long, value_name = "NODE.COMPONENT|COLUMN", requires = "plot")]
     against: Option<String>,
     #[command(flatten)]
     pub(super) bounds: bounds::Arguments,
@@ -51,7 +49,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if request.analysis.explore.is_some() {
         eprintln!("explore: the directions not taken are followed by `arcslip serve` only; this traces one path");
     }
-    let mut picture = Picture::planned(picture_file, arguments.against.as_deref(), &request)?;
+    let mut picture = PathPicture::planned(picture_file, arguments.against.as_deref(), &request)?;
     let mut writer = PathFile::open(&arguments.out, format, &request)?;
     let progress = progress_bar(request.analysis.max_increments, !is_standard_output(&arguments.out));
     let mut unwritten = None;
@@ -62,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             match writer.write(&judged) {
                 Ok(()) => {
                     if let Some(picture) = &mut picture {
-                        picture.increments.push(judged.increment);
+                        picture.push(judged.increment);
                     }
                     ControlFlow::Continue(())
                 }
@@ -107,36 +105,4 @@ fn progress_bar(max_increments: u64, to_file: bool) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {pos} of at most {len} increments, {elapsed}")
         .unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(max_increments).with_style(style)
-}
-
-/// A picture that is drawn when the path has ended, as the largest displacement is only known then.
-struct Picture<'a> {
-    file: PictureFile<'a>,
-    against: Option<Against>,
-    increments: Vec<Increment>,
-}
-
-impl<'a> Picture<'a> {
-    fn planned(
-        file: Option<PictureFile<'a>>,
-        against: Option<&str>,
-        request: &JobRequest,
-    ) -> Result<Option<Self>, Failure> {
-        let Some(file) = file else { return Ok(None) };
-        let against = against.map(|text| Against::read(text, &request.model)).transpose();
-        let against = against.map_err(|error| Failure::Input(vec![format!("--against {error}")]))?;
-        let recorded = request.analysis.record.as_ref().and_then(|record| record.nodes.as_ref());
-        if let Some(nodes) = recorded
-            && !against.as_ref().map_or(!nodes.is_empty(), |against| nodes.contains(&against.node))
-        {
-            let what = "/analysis/record/nodes: the displacement to be drawn is not recorded; add its node";
-            return Err(Failure::Input(vec![what.to_owned()]));
-        }
-        Ok(Some(Self { file, against, increments: Vec::new() }))
-    }
-
-    fn write(self, model: &Model) -> Result<(), Failure> {
-        let svg = svg(model, &self.increments, self.against).map_err(Failure::other)?;
-        self.file.write(&svg)
-    }
 }

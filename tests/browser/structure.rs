@@ -238,6 +238,12 @@ async fn beams_are_drawn_as_they_are_bent_with_the_forces_in_them() {
         assert_eq!(values.len(), 8);
         let told = browser.ask(&format!("{}.text.filter(Boolean).length", trace("diagram values"))).await;
         assert_eq!(told, 8, "a value at each end");
+        // The largest value stands beside its place, and the picture says what the height is.
+        let labels = browser.ask(&format!("{}.text", trace("diagram label"))).await;
+        assert_eq!(labels.as_array().map(Vec::len), Some(1), "{labels}");
+        let said =
+            format!("{STRUCTURE}.layout.annotations.some(({{text}}) => text.startsWith('{words}: full height '))");
+        assert_eq!(browser.ask(&said).await, true);
     }
     browser.close(served.url(), &[]).await;
 }

@@ -13,6 +13,7 @@ mod dashboard;
 mod disk;
 mod errors;
 mod examples;
+mod export;
 mod faults;
 mod follow;
 mod hosts;

@@ -88,6 +88,10 @@ class Program(unittest.TestCase):
         self.assertAlmostEqual(path.column("tip.y")[-1], 4.0 / math.pi, places=8)
         self.assertAlmostEqual(path.column("elements/0.start.bending_moment")[-1], 1.5 * math.pi, places=8)
         self.assertAlmostEqual(path.column("wall.reaction.rz")[-1], -1.5 * math.pi, places=8)
+        if matplotlib:
+            mesh = path.to_meshio()
+            moments = [[end["bending_moment"] for end in state["ends"]] for state in path[-1]["elements"]]
+            numpy.testing.assert_array_equal(mesh.cell_data["bending_moment"][0], moments)
         self.assertIn(path.largest_displacement(), ("tip.x", "tip.y"))
 
     def test_a_block_slips_where_it_must(self):
@@ -184,6 +188,13 @@ class Program(unittest.TestCase):
             with open(file, "a") as lines:
                 lines.write('{"index": ')
             self.assertEqual(len(arcslip.Path.load(file, block())), len(path))
+            for name in ("path.csv", "path.pvd", "path.parquet", "path.svg", "path.png"):
+                path.save(os.path.join(folder, name))
+            with open(os.path.join(folder, "path.csv"), newline="") as table:
+                self.assertEqual(len(list(csv.DictReader(table))), len(path))
+            self.assertEqual(len(list(pathlib.Path(folder, "path").glob("*.vtu"))), len(path))
+            with self.assertRaisesRegex(ValueError, "'.xlsx' names no format of a path"):
+                path.save(os.path.join(folder, "path.xlsx"))
 
     @ALL
     def test_tables_pictures_and_meshes(self):
@@ -217,6 +228,11 @@ class Program(unittest.TestCase):
             numpy.testing.assert_array_equal(mesh.point_data["displacement"][place][:2], last["displacements"][node])
         axial = [state["axial_force"] for state in last["elements"] if "axial_force" in state]
         numpy.testing.assert_array_equal(mesh.cell_data["axial_force"][0], axial)
+        nodes = list(path.request["model"]["nodes"])
+        for contact in last["contacts"]:
+            place = nodes.index(contact["node"])
+            self.assertEqual(mesh.point_data["normal_reaction"][place], contact["normal_reaction"])
+            numpy.testing.assert_array_equal(mesh.point_data["contact_reaction"][place][:2], contact["reaction"])
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, "arch.vtu")
             meshio.write(file, mesh)

@@ -26,9 +26,13 @@ impl Model {
         decode::decode(&self.text()?).map_err(refused)
     }
 
+    pub fn is_standard_input(&self) -> bool {
+        self.file == "-"
+    }
+
     pub fn text(&self) -> Result<Vec<u8>, Failure> {
         let unreadable = |error: std::io::Error| Failure::Input(vec![format!("{}: {error}", self.file)]);
-        if self.file == "-" {
+        if self.is_standard_input() {
             let mut text = Vec::new();
             std::io::stdin().read_to_end(&mut text).map_err(unreadable)?;
             return with_mesh(text, Path::new(""));

@@ -12,6 +12,8 @@ pub struct DataArray {
     kind: &'static str,
     name: &'static str,
     components: usize,
+    /// Names of the components, or none.
+    names_of_components: &'static [&'static str],
     /// Base64.
     text: String,
 }
@@ -22,12 +24,17 @@ impl DataArray {
         all.extend(bytes);
         let count = (all.len() - size_of::<u64>()) as u64;
         all[..size_of::<u64>()].copy_from_slice(&count.to_le_bytes());
-        Self { kind, name, components, text: STANDARD.encode(all) }
+        Self { kind, name, components, names_of_components: &[], text: STANDARD.encode(all) }
     }
 
     /// Numbers, each vector with as many components.
     pub fn numbers(name: &'static str, components: usize, values: &[f64]) -> Self {
         Self::new("Float64", name, components, values.iter().flat_map(|value| value.to_le_bytes()))
+    }
+
+    /// Numbers at the two ends of each element.
+    pub fn at_ends(name: &'static str, values: &[f64]) -> Self {
+        Self { names_of_components: &["start", "end"], ..Self::numbers(name, 2, values) }
     }
 
     pub fn integers(name: &'static str, values: impl Iterator<Item = i64>) -> Self {
@@ -47,6 +54,9 @@ impl DataArray {
             .with_attribute(("format", "binary"));
         if self.components > 1 {
             element = element.with_attribute(("NumberOfComponents", self.components.to_string().as_str()));
+        }
+        for (place, name) in self.names_of_components.iter().enumerate() {
+            element = element.with_attribute((format!("ComponentName{place}").as_str(), *name));
         }
         if let Some(tuples) = tuples {
             element = element.with_attribute(("NumberOfTuples", tuples.to_string().as_str()));

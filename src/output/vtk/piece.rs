@@ -192,7 +192,7 @@ impl Grid {
             }
         }
         let mut arrays = Vec::new();
-        arrays.extend(names.iter().zip(&at_ends).map(|(name, values)| DataArray::numbers(name, 2, values)));
+        arrays.extend(names.iter().zip(&at_ends).map(|(name, values)| DataArray::at_ends(name, values)));
         if self.has_bar_forces {
             arrays.push(DataArray::numbers("axial_force", 1, &axial));
         }

@@ -19,7 +19,7 @@ pub mod sweep;
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
 pub enum PlotError {
-    #[error("a path without increments cannot be drawn")]
+    #[error("no increment has a number to draw")]
     Empty,
     #[error("no path of the study has an error yet, so that nothing can be drawn")]
     NoErrors,

@@ -105,11 +105,14 @@ class Model:
 
     # Elements ---------------------------------------------------------------------------------------------------------
 
-    def bar(self, first: Node, second: Node, axial_stiffness: float, **more: Any) -> int:
-        """Adds a bar with the axial stiffness EA; returns its place among the elements.
+    def bar(self, first: Node, second: Node, axial_stiffness: Optional[float] = None, **more: Any) -> int:
+        """Adds a bar with the axial stiffness EA, which is required; returns its place among the elements.
 
         `more`: `rest_length`, `prestress`, `strain` (`"engineering"`, `"green"`, `"log"`), `name`.
         """
+        if axial_stiffness is None:
+            found = f", and {', '.join(map(repr, more))} is none" if more else ""
+            raise TypeError(f"a bar needs its axial stiffness EA, Young's modulus times area: axial_stiffness=...{found}")
         nodes = [self.node_name(first), self.node_name(second)]
         return self._element({"kind": "bar", "nodes": nodes, "axial_stiffness": plain(axial_stiffness), **plain(more)})
 

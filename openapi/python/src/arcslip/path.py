@@ -13,6 +13,9 @@ from arcslip.picture import unit_of
 Increment = Dict[str, Any]
 
 AXES = "xyz"
+#: Extensions of files that hold increments as lines, and of those that the program writes.
+LINES = ("", ".ndjson", ".jsonl")
+EXPORTED = (".csv", ".parquet", ".pvd", ".svg", ".png")
 #: Names of solids' cells in meshio by their kinds.
 CELLS = {kind: name for name, (kind, _) in SOLIDS.items()}
 
@@ -167,14 +170,17 @@ class Path:
 
     # Files ------------------------------------------------------------------------------------------------------------
 
-    def save(self, file: Any) -> None:
-        """Writes the increments, one JSON object a line, as `arcslip solve --out path.ndjson` does."""
+    def save(self, file: Any, *, program: Optional[str] = None) -> None:
+        """Writes the path, in the format that the extension names: `.ndjson` has the increments, one JSON object a line;
+        `.csv`, `.parquet`, `.pvd` (ParaView) and the pictures `.svg` and `.png` are written by the program."""
         extension = pathlib.Path(file).suffix.lower()
-        if extension not in ("", ".ndjson", ".jsonl"):
-            raise ValueError(
-                f"the increments are written as lines of JSON, such as path.ndjson, and not as {extension!r}; "
-                "`to_frame()` has methods for tables, and `arcslip solve --out` writes .csv, .pvd and .parquet"
-            )
+        if extension in EXPORTED:
+            from arcslip.program import export
+
+            return export(self, file, program)
+        if extension not in LINES:
+            known = ", ".join([*LINES[1:], *EXPORTED])
+            raise ValueError(f"the extension {extension!r} names no format of a path; these do: {known}")
         with open(file, "w", encoding="utf-8") as lines:
             lines.writelines(json.dumps(increment, separators=(",", ":")) + "\n" for increment in self.increments)
 
@@ -221,9 +227,10 @@ class Path:
         return max(largest, key=lambda name: largest[name])
 
     def to_meshio(self, place: int = -1) -> Any:
-        """The structure at an increment, by its place in the path, as a mesh of meshio: points where the nodes were,
-        their displacements as point data, axial forces of bars, of beams the mean of their ends, and von Mises' stresses of
-        solids as cell data."""
+        """The structure at an increment, by its place in the path, as a mesh of meshio: points where the nodes were, with
+        displacements, reactions of supports, and status, gap, reaction and slip of contacts; as data of cells the axial
+        forces of bars, of beams the mean of their ends and what the two ends have, and von Mises' stresses of solids. The
+        names are those of the files for ParaView."""
         import meshio
 
         if not self.increments:
@@ -244,32 +251,37 @@ class Path:
         ]
         numbers = {node: number for number, node in enumerate(nodes)}
         states = {state["element"]: state for state in increment.get("elements") or []}
-        by_kind: Dict[str, Tuple[List[List[int]], List[float], List[float]]] = {}
+        cells: Dict[str, List[List[int]]] = {}
+        forces: Dict[str, List[Dict[str, Any]]] = {}
         for place_of_element, element in enumerate(model["elements"]):
             joined = [numbers[node] for node in element["nodes"]]
-            state = states.get(place_of_element, {})
-            ends = state.get("ends")
-            force = sum(end["axial_force"] for end in ends) / 2 if ends else state.get("axial_force", float("nan"))
             kind = CELLS.get(element["kind"])
             if kind is None:
                 kind = {1: "vertex", 2: "line", 3: "line3"}[len(joined)]
                 if kind == "line3":
                     # The node in the middle comes last.
                     joined = [joined[0], joined[2], joined[1]]
-            own, forces, stresses = by_kind.setdefault(kind, ([], [], []))
-            own.append(joined)
-            forces.append(force)
-            stresses.append(state.get("von_mises", float("nan")))
+            cells.setdefault(kind, []).append(joined)
+            forces.setdefault(kind, []).append(forces_of(states.get(place_of_element, {})))
+        # Each name with a value that says its shape.
+        names: Dict[str, Any] = {"axial_force": NAN}
+        for own in (own for of_kind in forces.values() for own in of_kind):
+            names.update(own)
         import numpy
 
-        cell_data = {"axial_force": [numpy.array(forces) for _, forces, _ in by_kind.values()]}
-        if any(kind in CELLS.values() for kind in by_kind):
-            cell_data["von_mises"] = [numpy.array(stresses) for _, _, stresses in by_kind.values()]
+        supports = increment.get("supports") or {}
+        reactions = [in_space(supports[node]) if node in supports else nothing for node in nodes]
+        point_data = {"displacement": displacement, **({"support_reaction": reactions} if supports else {})}
+        if model.get("contacts"):
+            point_data.update(at_contacts(increment, numbers, in_space))
         return meshio.Mesh(
             numpy.array(points),
-            [(kind, numpy.array(own)) for kind, (own, _, _) in by_kind.items()],
-            point_data={"displacement": numpy.array(displacement)},
-            cell_data=cell_data,
+            [(kind, numpy.array(joined)) for kind, joined in cells.items()],
+            point_data={name: numpy.array(own) for name, own in point_data.items()},
+            cell_data={
+                name: [numpy.array([own.get(name, nan_like(value)) for own in of_kind]) for of_kind in forces.values()]
+                for name, value in names.items()
+            },
         )
 
     def __repr__(self) -> str:
@@ -278,3 +290,54 @@ class Path:
         last = self.increments[-1]
         end = self.stop_reason or "why it ended is not known"
         return f"<Path of {len(self)} increments to {last['load_factor']:.6g} in stage {last['stage']!r}: {end}>"
+
+
+NAN = float("nan")
+#: Numbers of the contacts' states, as in the files for ParaView; where a node has several, the largest.
+STATES = {"free": 0, "slip": 1, "stick": 2}
+NO_CONTACT = 255
+
+
+def nan_like(value: Any) -> Any:
+    """A number, or a list of them, that is none."""
+    return [NAN] * len(value) if isinstance(value, list) else NAN
+
+
+def forces_of(state: Mapping[str, Any]) -> Dict[str, Any]:
+    """The forces of an element, or its stress, by the names of the files for ParaView."""
+    ends = state.get("ends")
+    if not ends:
+        return {name: state[name] for name in ("axial_force", "von_mises") if name in state}
+    found: Dict[str, Any] = {"axial_force": sum(end["axial_force"] for end in ends) / 2}
+    for name, first in ends[0].items():
+        last = ends[1][name]
+        if isinstance(first, list):
+            # In space there are two of some, about the two axes.
+            one = name[: -len("s")]
+            found.update((f"{one}_{axis}", [*pair]) for axis, pair in enumerate(zip(first, last), 1))
+        else:
+            found["beam_axial_force" if name == "axial_force" else name] = [first, last]
+    return found
+
+
+def at_contacts(increment: Increment, numbers: Mapping[str, int], in_space: Any) -> Dict[str, List[Any]]:
+    """The contacts' state at the nodes: of several the status that holds most, the smallest gap, the sum of the reactions,
+    the largest normal reaction and the largest slip in total."""
+    count = len(numbers)
+    status, gap, normal, slip = [NO_CONTACT] * count, [NAN] * count, [NAN] * count, [NAN] * count
+    reaction = [[0.0] * 3 for _ in range(count)]
+    for contact in increment["contacts"]:
+        place = numbers.get(contact["node"])
+        if place is None:
+            continue
+        own = STATES[contact["status"]]
+        status[place] = own if status[place] == NO_CONTACT else max(status[place], own)
+        size = sum(part * part for part in contact.get("slip_total") or []) ** 0.5
+        for values, value, chosen in (
+            (gap, contact["gap"], min), (normal, contact["normal_reaction"], max), (slip, size, max),
+        ):
+            values[place] = value if values[place] != values[place] else chosen(values[place], value)
+        reaction[place] = [total + part for total, part in zip(reaction[place], in_space(contact["reaction"]))]
+    return {
+        "contact_status": status, "gap": gap, "contact_reaction": reaction, "normal_reaction": normal, "slip_total": slip,
+    }

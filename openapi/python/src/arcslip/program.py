@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 import subprocess
+import tempfile
 import threading
 from typing import Any, Callable, Dict, List, Mapping, Optional, Union
 
@@ -83,6 +84,19 @@ def solve(
     words_said = "".join(said)
     warn(line[len(WARNING):] for line in words_said.splitlines() if line.startswith(WARNING))
     return path_of(request, increments, status, words_said)
+
+
+def export(path: Path, file: Union[str, "os.PathLike[str]"], program: Optional[str] = None) -> None:
+    """Writes a path in the format that the extension of the file names."""
+    option = "--plot" if os.fspath(file).lower().endswith((".svg", ".png")) else "--out"
+    with tempfile.TemporaryDirectory() as folder:
+        lines = os.path.join(folder, "path.ndjson")
+        path.save(lines)
+        command = [find_program(program), "export", "-", lines, option, os.path.abspath(file)]
+        asked = text_of(path.request)
+        run = subprocess.run(command, input=asked, capture_output=True, text=True, encoding="utf-8")
+    if run.returncode != 0:
+        raise ProgramFailed(run.stderr.strip())
 
 
 def path_of(request: Dict[str, Any], increments: List[Dict[str, Any]], status: int, said: str) -> Path:

@@ -6,13 +6,13 @@ use crate::studies::picture::path::Against;
 use crate::studies::picture::path::strokes::Stretch;
 use std::sync::Arc;
 
-/// Load factor against a displacement.
+/// Load factor against a quantity.
 #[derive(Debug)]
 pub struct Curve {
     /// The model's name.
     pub title: Option<String>,
-    displacement: Against,
-    /// The displacement's name, with its unit.
+    quantity: Against,
+    /// The quantity's name, with its unit.
     pub against: String,
     pub stages: Vec<StageCurve>,
     /// In order of appearance.
@@ -27,7 +27,7 @@ pub struct StageCurve {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurvePoint {
-    /// Displacement and load factor.
+    /// The quantity and the load factor.
     pub at: (f64, f64),
     /// The path has several continuations here.
     pub bifurcation: bool,
@@ -51,7 +51,7 @@ pub struct Event {
     /// A, B, ... Z, AA, AB, ...
     pub label: String,
     pub kind: EventKind,
-    /// Displacement and load factor.
+    /// The quantity and the load factor.
     pub at: (f64, f64),
     /// The event, as in the increment.
     pub words: Option<String>,
@@ -68,19 +68,17 @@ pub enum EventKind {
 
 impl Curve {
     /// A curve without points.
-    pub fn new(model: &Model, displacement: Against) -> Self {
-        let length = model.units.as_ref().and_then(|units| units.length.as_deref());
-        let unit = if displacement.is_rotation() { Some("rad") } else { length };
-        let unit = unit.map_or_else(String::new, |unit| format!(" [{unit}]"));
-        let against = format!("{displacement}{unit}");
-        Self { title: model.name.clone(), displacement, against, stages: Vec::new(), events: Vec::new() }
+    pub fn new(model: &Model, quantity: Against) -> Self {
+        let unit = quantity.unit(model.units.as_ref()).map_or_else(String::new, |unit| format!(" [{unit}]"));
+        let against = format!("{}{unit}", quantity.name());
+        Self { title: model.name.clone(), quantity, against, stages: Vec::new(), events: Vec::new() }
     }
 
-    /// Adds the point of an increment, if it has the displacement.
+    /// Adds the point of an increment, if it has the quantity.
     pub fn push(&mut self, increment: &Increment) {
-        let Some(displacement) = self.displacement.of(increment) else { return };
-        let at = (displacement, increment.load_factor);
-        if displacement.is_finite() && increment.load_factor.is_finite() {
+        let Some(value) = self.quantity.of(increment) else { return };
+        let at = (value, increment.load_factor);
+        if value.is_finite() && increment.load_factor.is_finite() {
             self.add_point(increment, at);
             self.add_event(increment, at);
         }

@@ -31,30 +31,30 @@ const LETTER: Lettering = Lettering { size: 14, ..TITLE };
 
 /// The picture as SVG text.
 pub fn draw(curve: &Curve) -> Result<String, DrawingError> {
-    let displacement = Axis::showing(curve.places().map(|place| place.0), TICKS);
+    let across = Axis::showing(curve.places().map(|place| place.0), TICKS);
     let load = Axis::showing(curve.places().map(|place| place.1), TICKS);
     let legend = Legend::new(curve, &load);
     let height = LOWEST.max(legend.height() + CAPTION + 2 * MARGIN);
     shapes::svg(CHART + LEGEND, height, |sheet| {
-        draw_chart(sheet, curve, &displacement, &load, height.min(HIGHEST))?;
+        draw_chart(sheet, curve, &across, &load, height.min(HIGHEST))?;
         legend.draw(sheet, (CHART * FINE, (CAPTION + MARGIN / 2) * FINE))
     })
 }
 
-fn draw_chart(sheet: &Sheet<'_>, curve: &Curve, displacement: &Axis, load: &Axis, height: i32) -> Drawn {
+fn draw_chart(sheet: &Sheet<'_>, curve: &Curve, across: &Axis, load: &Axis, height: i32) -> Drawn {
     let (part, _) = sheet.split_horizontally(CHART * FINE);
     let (part, _) = part.split_vertically(height * FINE);
     let sides = [
         Side {
-            name: displacement.named(&format!("displacement {}", curve.against)),
-            range: displacement.range.clone(),
-            tick: &|at| displacement.tick(at),
+            name: across.named(&curve.against),
+            range: across.range.clone(),
+            tick: &|at| across.tick(at),
             ticks: TICKS,
         },
         Side { name: load.named(load_name(curve)), range: load.range.clone(), tick: &|at| load.tick(at), ticks: TICKS },
     ];
     let chart = chart::chart(&part, CHART, curve.title.as_deref(), sides)?;
-    let on_sheet = |at: (f64, f64)| chart.backend_coord(&(displacement.drawn(at.0), load.drawn(at.1)));
+    let on_sheet = |at: (f64, f64)| chart.backend_coord(&(across.drawn(at.0), load.drawn(at.1)));
     let (across, along) = chart.plotting_area().get_pixel_range();
     let origin = on_sheet((0.0, 0.0));
     sheet.draw(&PathElement::new(vec![(across.start, origin.1), (across.end, origin.1)], ZERO.stroke_width(10)))?;

@@ -76,7 +76,10 @@ async fn picture(
     let model = path.of_request(|request| request.model.clone()).await?;
     let nothing = |why: &str| Problem::not_found(format_args!("picture of job {id}: {why}"));
     let against = match against {
-        Some(text) => Against::read(&text, &model).map_err(|error| nothing(&format!("against {error}")))?,
+        Some(text) => {
+            let asked = path.of_request(move |request| Against::read(&text, request)).await?;
+            asked.map_err(|error| nothing(&format!("against {error}")))?
+        }
         None => {
             let farthest = over_path(&mut path, job.last_index, Farthest::of(&model), Farthest::push).await?;
             path.rewind();
@@ -91,7 +94,7 @@ async fn picture(
             tracing::error!(%error, %id, "a picture cannot be drawn");
             Err(Problem::internal())
         }
-        Err(_) => Err(nothing("no increment of it has that displacement")),
+        Err(_) => Err(nothing("no increment of it has that number")),
     }
 }
 

@@ -19,7 +19,9 @@ export function diagramValues(kind, { ends, axial }) {
 export class ForceDiagrams {
   /** `most`: the value that has the full height; `size`: of the extent. */
   constructor(kind, traces, { most, size, units }) {
-    Object.assign(this, { kind, traces, units, ...DIAGRAMS[kind] });
+    Object.assign(this, { kind, traces, units, most, ...DIAGRAMS[kind] });
+    /** The largest value that is drawn, and the place of it. */
+    this.largest = { value: 0, place: null };
     this.factor = most > 0 ? (this.side * HEIGHT * size) / most : 0;
     this.colour = fromSheet("--diagram");
   }
@@ -36,6 +38,20 @@ export class ForceDiagrams {
     [0, last].forEach((place, end) => this.traces.unmarked("diagram values", tops[place], [
       ...named, `${this.words} ${measured(values[end], this.unit)}`,
     ]));
+    [0, last].forEach((place, end) => {
+      if (Math.abs(values[end]) > Math.abs(this.largest.value)) this.largest = { value: values[end], place: tops[place] };
+    });
+  }
+
+  /** Writes the largest value beside its place, once all is drawn. */
+  label() {
+    const { value, place } = this.largest;
+    if (place) this.traces.labels("diagram label", [[measured(value, this.unit), place]], this.colour);
+  }
+
+  /** What the height means, in words; null where nothing has one. */
+  get scale() {
+    return this.factor === 0 ? null : `${this.words}: full height ${measured(this.most, this.unit)}`;
   }
 
   /** Of moments there is no label, as a model has none for them but those of its force and length. */

@@ -25,7 +25,7 @@ export const nothingDrawn = () => ({ reaction: LEAST, load: LEAST, axial: 0, dia
 /**
  * Traces of `increment` of a model. `turn`: from where it is seen; `exaggeration`: of displacements; `hasNames`: of nodes, null
  * for the usual; `hides`: a set of `loads`, `reactions`, `obstacles`; `hasOwnScale`: colours span the forces of this increment; `diagram`: of the forces in members, null for none; `extent` and `largest`: of what has been drawn so far, widened by this; `reached`: load factor that each stage
- * came to. Answers `{traces, leftOut}`, the latter sentences on what is not in the picture.
+ * came to. Answers `{traces, leftOut, heights}`: sentences on what is not in the picture, and what the height of a diagram means.
  */
 export function structureDrawing(model, increment, view) {
   const { extent, largest, exaggeration } = view;
@@ -56,6 +56,7 @@ export function structureDrawing(model, increment, view) {
   const common = { now, moved, units, detail };
   if (!hides.has("obstacles")) new ObstacleDrawing(model, extent, traces, { ...common, moves: loads.motions });
   new ElementDrawing(model, traces, { ...common, forces, colours, stressColours, rotation, diagrams, size: extent.size });
+  diagrams?.label();
   if (!hides.has("loads")) drawLoads(loads, extent, traces, { ...common, most: largest.load });
   new ContactDrawing(model, increment, extent, traces, { ...common, most: largest.reaction, hasReactions: !hides.has("reactions") });
   const hasNames = detail.canHaveNames && (view.hasNames ?? detail.hasNames);
@@ -67,7 +68,7 @@ export function structureDrawing(model, increment, view) {
     detail.leave("Forces of elements are not all recorded; those that are not are computed from the displacements");
   }
   const scale = stressColours.scale(units) ?? colours.scale(units.force);
-  return { traces: scale ? [...traces.all, scale] : traces.all, leftOut: detail.leftOut };
+  return { traces: scale ? [...traces.all, scale] : traces.all, leftOut: detail.leftOut, heights: diagrams?.scale ?? null };
 }
 
 /** The largest value of a diagram so far. */

@@ -18,7 +18,7 @@ const TRIAD_COLOURS = ["#d0453b", "#2e9a5b", "#3486cc"];
  *  the picture. */
 export function structurePicture(model, increment, view) {
   const isInSpace = model.dimension === 3;
-  const { traces, leftOut } = structureDrawing(model, increment, view);
+  const { traces, leftOut, heights } = structureDrawing(model, increment, view);
   const [x, y] = ranges(view.extent, projection(model.dimension, view.turn));
   const unit = unitsOf(model).length;
   const below = traces.some(({ name }) => name === "force scale") ? SCALE_HEIGHT : 0;
@@ -27,7 +27,7 @@ export function structurePicture(model, increment, view) {
     margin: isInSpace ? { l: 8, r: 28, t: 30, b: 8 + below } : { l: 48, r: 28, t: 30, b: 40 + below },
     dragmode: isInSpace ? false : "pan",
     xaxis: { ...plain("x"), range: x }, yaxis: { ...plain("y"), range: y, scaleanchor: "x" },
-    annotations: [...said(view), ...(isInSpace ? triad(view.turn) : [])], uirevision: view.revision,
+    annotations: [...said(view, heights), ...(isInSpace ? triad(view.turn) : [])], uirevision: view.revision,
   });
   // Several lines.
   whole.hoverlabel.align = "left";
@@ -49,9 +49,9 @@ const words = (text, more) => ({
 });
 
 /** What the picture has to say of itself. */
-function said({ exaggeration, caption }) {
+function said({ exaggeration, caption }, heights) {
   const told = [
-    caption, exaggeration === 1 ? null : `displacements × ${short(exaggeration)}; gaps are not to scale`,
+    caption, heights, exaggeration === 1 ? null : `displacements × ${short(exaggeration)}; gaps are not to scale`,
   ].filter(Boolean);
   return told.map((text, line) => words(text, {
     x: 0, y: 1, xanchor: "left", yanchor: "top", yshift: -16 * line, name: "caption",

@@ -119,9 +119,14 @@ export class StructureTraces {
   }
 
   names(places, color) {
-    const trace = this.trace("node name", () => ({
+    this.labels("node name", places, color);
+  }
+
+  /** Words beside places. */
+  labels(name, places, color) {
+    const trace = this.trace(name, () => ({
       mode: "text", textposition: "top right", textfont: { size: 12, color }, hoverinfo: "skip", cliponaxis: false,
     }));
-    for (const [name, place] of places) this.add(trace, [place], name);
+    for (const [words, place] of places) this.add(trace, [place], words);
   }
 }

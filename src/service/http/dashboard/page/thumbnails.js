@@ -9,7 +9,7 @@ const [WIDTH, HEIGHT, RIM] = [44, 28, 2];
 /** Increments that are read for a picture, and points that are drawn of them. */
 const [MOST, DRAWN] = [10_000, 200];
 /** Unknowns times increments up to which the service finds the columns at once. */
-const LARGEST = 100_000;
+const LARGEST = 1_000_000;
 /** Milliseconds before the first picture, and between pictures. */
 const [FIRST, PAUSE] = [1200, 60];
 
