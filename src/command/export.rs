@@ -7,6 +7,10 @@ use crate::command::output::path_file::{Format, PathFile};
 use crate::command::output::path_picture::PathPicture;
 use crate::command::output::picture_file::PictureFile;
 use crate::command::output::written::{folders_exist, is_standard_output, one_on_standard_output};
+use crate::model::input::names::quoted;
+use crate::model::{JobRequest, Model};
+use crate::result::increment::Increment;
+use std::collections::HashSet;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -32,6 +36,9 @@ pub struct Arguments {
     /// What to draw, such as `tip.x` or `elements/0.axial_force`. Default: the largest displacement.
     #[arg(long, value_name = "NODE.COMPONENT|COLUMN", requires = "plot")]
     against: Option<String>,
+    /// What tells the path from those that leave it, for ParaView's field data.
+    #[arg(long, value_name = "TEXT", default_value = "", requires = "out")]
+    branch: String,
 }
 
 pub fn run(arguments: &Arguments) -> Outcome {
@@ -44,13 +51,20 @@ pub fn run(arguments: &Arguments) -> Outcome {
         return Err(Failure::Input(vec!["the model and the path cannot both be standard input".to_owned()]));
     }
     let request = arguments.model.read()?;
-    let mut lines = lines(&arguments.path)?.peekable();
+    let known = Known::of(&request);
+    let checked = |judged: Result<JudgedIncrement, Failure>| {
+        let judged = judged?;
+        known.check(&judged.increment)?;
+        Ok(judged)
+    };
+    let mut lines = lines(&arguments.path)?.map(checked).peekable();
     // A path that cannot be read does not overwrite an earlier result.
-    if let Some(Err(_)) = lines.peek() {
-        return Err(lines.next().and_then(Result::err).unwrap_or_else(|| Failure::other("no path")));
+    if let Some(Err(failure)) = lines.next_if(Result::is_err) {
+        return Err(failure);
     }
     let mut picture = PathPicture::planned(picture_file, arguments.against.as_deref(), &request)?;
-    let mut writer = file.map(|(out, format)| PathFile::open(out, format, &request)).transpose()?;
+    let mut writer =
+        file.map(|(out, format)| PathFile::open_branch(out, format, &request, &arguments.branch)).transpose()?;
     let unwritten = |error: io::Error| Failure::Other(format!("the path could not be written: {error}"));
     for judged in lines {
         let judged = judged?;
@@ -66,6 +80,39 @@ pub fn run(arguments: &Arguments) -> Outcome {
         picture.write(&request.model)?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// What increments of a model name.
+struct Known<'a> {
+    stages: HashSet<&'a str>,
+    model: &'a Model,
+}
+
+impl<'a> Known<'a> {
+    fn of(request: &'a JobRequest) -> Self {
+        Self { stages: request.model.stages.iter().map(|stage| stage.name.as_str()).collect(), model: &request.model }
+    }
+
+    /// # Errors
+    /// The increment names what the model does not have: the path is that of another one.
+    fn check(&self, increment: &Increment) -> Result<(), Failure> {
+        let Increment { stage, displacements, contacts, elements, .. } = increment;
+        let is_node = |name: &str| self.model.nodes.contains_key(name);
+        let unknown = if !self.stages.contains(&**stage) {
+            Some(format!("stage {}", quoted(stage)))
+        } else if let Some((node, _)) = displacements.iter().find(|(node, _)| !is_node(node)) {
+            Some(format!("node {}", quoted(node)))
+        } else if let Some(contact) = contacts.iter().find(|contact| !is_node(&contact.node)) {
+            Some(format!("contact of node {}", quoted(&contact.node)))
+        } else {
+            let count = self.model.elements.len() as u64;
+            elements.iter().find(|state| state.element >= count).map(|state| format!("element {}", state.element))
+        };
+        let Some(unknown) = unknown else { return Ok(()) };
+        let what =
+            format!("increment {}: the model has no {unknown}: is this the path of another model?", increment.index);
+        Err(Failure::Input(vec![what]))
+    }
 }
 
 /// The increments of a file, one a line; empty lines are passed over.

@@ -103,7 +103,7 @@ impl StopReason {
             Self::ModeLimit => "more contact modes than max_modes would have to be examined to go on",
             Self::SlipsNotFound => {
                 "several nodes that touch in space without reaction may begin to slip at once, and no direction in which \
-                 they do was found"
+                 they do was found; where the load lifts them off, check the signs of forces and normals"
             }
             Self::MemoryLimit => "going on would take more memory than a solve may hold",
             Self::Cancelled => "cancelled",

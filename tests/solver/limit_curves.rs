@@ -1,6 +1,6 @@
 //! Limit points followed in a parameter, beside closed forms and beside paths of their own.
 
-use crate::common::paths::{close, scene_file};
+use crate::common::paths::{close, scene_file, typed};
 use crate::common::random::random_scene;
 use crate::common::round_arch::round_arch;
 use arcslip::continuation::path::iterator::Path;
@@ -139,6 +139,39 @@ fn a_range_with_an_end_that_makes_no_model_is_refused_at_once() {
         assert_eq!(errors[0].pointer, "/curve/range");
         assert!(errors[0].detail.starts_with(found), "{}", errors[0].detail);
     }
+}
+
+/// The limit load of the truss of `one-bar-truss` comes to nothing at `mu = 1.5`, where its bar is horizontal from the start.
+#[test]
+fn a_point_off_the_measure_ends_the_curve_and_leaves_the_points_before() {
+    let request = scene_file("one-bar-truss");
+    let settings =
+        json!({"parameter": "/model/contacts/0/friction", "range": [0.0, 1.5], "step": 0.1, "limit_point": 2});
+    let found = followed(&curve_of(&request, &settings).expect("a curve")).expect("points");
+    assert!(found.rows.len() >= 15 && found.rows.iter().all(|row| row.value < 1.5), "{}", found.rows.len());
+    let above = ended(&found).ends_above.clone().expect("an end");
+    assert!(above.contains("off the measure"), "{above}");
+}
+
+/// Over an imperfection the tall truss buckles before its symmetric limit point: points that continue it are on no path, and
+/// say so.
+#[test]
+fn points_past_one_that_a_path_does_not_have_are_marked() {
+    let bar = |end: &str| json!({"kind": "bar", "nodes": [end, "apex"], "axial_stiffness": 1.0, "strain": "green"});
+    let request = typed(json!({"model": {
+        "dimension": 2, "nodes": {"left": [-1, 0], "right": [1, 0], "apex": [0, 2]},
+        "supports": {"left": ["x", "y"], "right": ["x", "y"]}, "elements": [bar("left"), bar("right")],
+        "stages": [{"name": "press", "forces": {"apex": [0, -1]},
+                    "until": {"displacement": {"node": "apex", "component": "y", "below": -4}}}],
+    }}));
+    let settings = json!({"parameter": "/model/nodes/apex/0", "range": [-0.1, 0.1], "step": 0.02});
+    let found = followed(&curve_of(&request, &settings).expect("a curve")).expect("points");
+    let summary = ended(&found);
+    let on_path: Vec<f64> = found.known_on_path().rows.iter().map(|row| row.value).collect();
+    assert_eq!(on_path, [0.0]);
+    assert!(found.rows.iter().all(|row| summary.is_off_path(row) == (row.value != 0.0)));
+    let table = critical_curves::table::csv(&found).expect("a table");
+    assert_eq!(table.matches(",true,").count() + 1, found.rows.len() + 1, "{table}");
 }
 
 #[test]

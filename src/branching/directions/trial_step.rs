@@ -149,7 +149,7 @@ fn rounding_of_load_rate(loading: Loading<'_>, state: &State, rate: &Rate, modes
 }
 
 /// The point reached by a small step along a direction in these modes, with the direction there.
-fn stepped(
+pub(crate) fn stepped(
     loading: Loading<'_>,
     state: &State,
     rate: &Rate,

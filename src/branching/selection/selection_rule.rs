@@ -19,6 +19,7 @@ use crate::branching::directions::trial_step::confirm;
 use crate::branching::selection::enumeration::directions;
 use crate::branching::selection::second_order;
 use crate::branching::selection::tolerances::{DISSIPATION_TIE_TOLERANCE, MOTION_TIE_TOLERANCE, RESTING_MOTION};
+use crate::branching::stability::negative_ahead;
 use crate::mechanics::multi_contact::changeable_contacts::Standing;
 use crate::mechanics::problem::linearity;
 use crate::mechanics::problem::loading::Loading;
@@ -96,7 +97,7 @@ pub fn decide(
 ) -> Decision {
     let (options, found) = list(loading, state, standings, before, rules);
     let is_doubtful = second_order::is_asked(loading, state, &options, before);
-    let decision = taken_of(loading, options, &found, before, rules);
+    let decision = taken_of((loading, state), options, &found, before, rules);
     let ends = matches!(decision.stop, Some(StopReason::Degenerate | StopReason::NoDirection));
     if !(ends || is_doubtful) || found.unexplored > 0 || rules.effort.cancel.is_cancelled() {
         return decision;
@@ -105,12 +106,18 @@ pub fn decide(
     let Some(SecondOrderFindings { options, unclear }) = second_order::directions(here, before) else {
         return decision;
     };
-    taken_of(loading, options, &FoundDirections { degenerate: unclear, ..FoundDirections::default() }, before, rules)
+    taken_of(
+        (loading, state),
+        options,
+        &FoundDirections { degenerate: unclear, ..FoundDirections::default() },
+        before,
+        rules,
+    )
 }
 
 /// Takes one of the directions found.
 fn taken_of(
-    loading: Loading<'_>,
+    (loading, state): (Loading<'_>, &State),
     options: Vec<DirectionChoice>,
     found: &FoundDirections,
     before: PriorMotion<'_>,
@@ -142,6 +149,9 @@ fn taken_of(
             &goal
         }
     };
+    if rules.load_rises {
+        retain_most_stable(loading, state, &options, &mut open, rules);
+    }
     let taken = preferred(&options, previous, rules, |index| open.contains(&index));
     let stop = match taken {
         Some(index) if options[index].mechanism => Some(StopReason::Mechanism),
@@ -160,6 +170,29 @@ fn taken_of(
         unexplored: found.unexplored,
         degenerate: found.degenerate || odd,
     }
+}
+
+/// Leaves of several directions those along which the fewest eigenvalues are negative: under load control a structure
+/// takes a stable branch where there is one. All stay where this is not known of each.
+pub(crate) fn retain_most_stable(
+    loading: Loading<'_>,
+    state: &State,
+    options: &[DirectionChoice],
+    open: &mut Vec<usize>,
+    rules: Rules<'_>,
+) {
+    if open.len() < 2 {
+        return;
+    }
+    let count = |index: &usize| {
+        let option = &options[*index];
+        let holds = !option.mechanism && !rules.effort.cancel.is_cancelled();
+        holds.then(|| negative_ahead(loading, state, (&option.rate, &option.modes), rules.force_scale)).flatten()
+    };
+    let Some(counts) = open.iter().map(count).collect::<Option<Vec<usize>>>() else { return };
+    let least = counts.iter().min().copied();
+    let mut counts = counts.into_iter();
+    open.retain(|_| counts.next() == least);
 }
 
 /// The direction that the rule prefers among those that are eligible.

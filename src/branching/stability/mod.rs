@@ -34,13 +34,14 @@ mod mode_eigenvalues;
 mod tolerances;
 
 use crate::branching::bifurcation::singularity::test_functions::negative_eigenvalues;
+use crate::branching::directions::trial_step::stepped;
 use crate::branching::stability::growing_motion::GrowthVerdict;
 use crate::branching::stability::mode_eigenvalues::ModeEigenvalues;
-use crate::branching::stability::tolerances::MOST_UNKNOWNS;
+use crate::branching::stability::tolerances::{MOST_UNKNOWNS, SHORT_WAYS};
 use crate::mechanics::contact::{ContactPair, Mode};
 use crate::mechanics::multi_contact::changeable_contacts::Standing;
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::state::State;
+use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::cancel::CancelFlag;
 use crate::result::increment::{DeadLoadStability, Instability, Stability};
 use crate::step::corrector::cost_counters::Work;
@@ -83,7 +84,9 @@ pub(crate) fn assess(at: AssessedState<'_>, cancel: &CancelFlag, work: &mut Work
     } else {
         dead_load(at, cancel, work)
     };
-    let diverges = dead_load == DeadLoadStability::Unstable && !flutters || negative.is_some_and(|count| count > 0);
+    // Where the state is stable, contacts prevent the motions of negative eigenvalues.
+    let is_soft = negative.is_some_and(|count| count > 0) && dead_load != DeadLoadStability::Stable;
+    let diverges = dead_load == DeadLoadStability::Unstable && !flutters || is_soft;
     let instability = match (diverges, flutters) {
         (true, _) => Some(Instability::Divergence),
         (false, true) => Some(Instability::Flutter),
@@ -101,6 +104,22 @@ fn dead_load(at: AssessedState<'_>, cancel: &CancelFlag, work: &mut Work) -> Dea
         GrowthVerdict::None => DeadLoadStability::Stable,
         GrowthVerdict::NotDecided => DeadLoadStability::Unknown,
     }
+}
+
+/// The number of negative eigenvalues a short way along a direction, in its modes; `None` where it is not found.
+pub(crate) fn negative_ahead(
+    loading: Loading<'_>,
+    state: &State,
+    (rate, modes): (&Rate, &[Mode]),
+    force_scale: f64,
+) -> Option<usize> {
+    if loading.structure.unknowns() > MOST_UNKNOWNS {
+        return None;
+    }
+    let ahead = |way: &f64| stepped(loading, state, rate, modes, *way, force_scale);
+    let (corrected, _) = SHORT_WAYS.iter().find_map(ahead)?;
+    let at = AssessedState { loading, state: &corrected.state, modes, standings: &[], is_critical: false };
+    ModeEigenvalues::in_modes(at, modes, &mut Work::default()).map(|found| found.negative())
 }
 
 /// By the signs of pivots alone, where no contact slips against friction.

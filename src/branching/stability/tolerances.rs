@@ -41,3 +41,7 @@ pub(super) const ADMISSIBLE: f64 = 1e-8;
 /// Margin, relative to the largest entry, by which a form has to be positive definite: its entries are sums of products
 /// with an error of round-off.
 pub(super) const DEFINITE: f64 = 1e-12;
+
+/// Arc lengths along a direction after which its stability is told, the first one that its modes hold for. An eigenvalue
+/// that is zero at the point, as at a limit point, is then some thousand times its error 1e-8.
+pub(super) const SHORT_WAYS: [f64; 2] = [1e-4, 1e-6];

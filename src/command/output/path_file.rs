@@ -84,6 +84,14 @@ impl PathFile {
     /// # Errors
     /// A file or folder cannot be made.
     pub fn open(place: &Path, format: Format, request: &JobRequest) -> Result<Self, Failure> {
+        Self::open_branch(place, format, request, "")
+    }
+
+    /// The same for a path that leaves another one; `branch` tells it from that one.
+    ///
+    /// # Errors
+    /// As for [`open`](Self::open).
+    pub fn open_branch(place: &Path, format: Format, request: &JobRequest, branch: &str) -> Result<Self, Failure> {
         let failed = |error: io::Error| Failure::Other(format!("{}: {error}", place.display()));
         let plain = || -> io::Result<Box<dyn Write>> {
             Ok(if is_standard_output(place) { Box::new(io::stdout()) } else { Box::new(File::create(place)?) })
@@ -93,7 +101,7 @@ impl PathFile {
             Format::Csv => {
                 Self::Csv { to: plain().map_err(failed)?, table: Box::new(Table::of(request)), begun: false }
             }
-            Format::Pvd => Self::Pvd(Box::new(PvdFile::open(place, request).map_err(failed)?)),
+            Format::Pvd => Self::Pvd(Box::new(PvdFile::open(place, request, branch).map_err(failed)?)),
             Format::Parquet => {
                 let open = |table| Ok(BufWriter::new(File::create(file_of(place, table))?));
                 let sheets = PathSheets::new(&request.model, open);
@@ -165,7 +173,7 @@ fn remove_pieces(folder: &Path) -> io::Result<()> {
 }
 
 impl PvdFile {
-    fn open(place: &Path, request: &JobRequest) -> io::Result<Self> {
+    fn open(place: &Path, request: &JobRequest, branch: &str) -> io::Result<Self> {
         let folder = place.with_extension("");
         // A name without extension is the folder's own.
         let folder = if folder == place { place.with_extension("pieces") } else { folder };
@@ -178,7 +186,7 @@ impl PvdFile {
         let mut list = File::create(place)?;
         list.write_all(Collection::HEAD.as_bytes())?;
         list.write_all(Collection::TAIL.as_bytes())?;
-        Ok(Self { list, folder, folder_name, grid: Grid::of(request, ""), collection: Collection::default() })
+        Ok(Self { list, folder, folder_name, grid: Grid::of(request, branch), collection: Collection::default() })
     }
 
     fn write(&mut self, judged: &JudgedIncrement) -> io::Result<()> {

@@ -1,8 +1,10 @@
 //! The curve of critical points, from one value of the parameter to the next.
 
 use crate::algebra::scalar_root::find_root;
-use crate::continuation::critical_curve::critical_point::{self, CurvePoint, PointNote};
-use crate::continuation::critical_curve::curve_outcome::{CurveEnd, CurveFailure, CurveReport, DirectionEnd};
+use crate::continuation::critical_curve::critical_point::{self, PointNote};
+use crate::continuation::critical_curve::curve_outcome::{
+    AcceptPoint, CurveBreak, CurveEnd, CurveFailure, CurveReport, DirectionEnd,
+};
 use crate::continuation::critical_curve::curve_position::{CurvePosition, SceneFamily, extrapolated};
 use crate::continuation::critical_curve::cusp::Cusp;
 use crate::continuation::critical_curve::history::solved_history::{PathCondition, SolvedHistory};
@@ -39,9 +41,6 @@ pub struct CurveRange {
     /// Longest step between two values.
     pub step: f64,
 }
-
-/// Receives the points of a curve in the order in which they are found; breaks to end it.
-pub type AcceptPoint<'a> = &'a mut dyn FnMut(CurvePoint) -> ControlFlow<()>;
 
 /// A curve of critical points.
 pub struct CriticalCurve<'a> {
@@ -124,7 +123,8 @@ impl<'a> CriticalCurve<'a> {
         let note = PointNote { event: None, codimension_two: false, from_path: true };
         let end = match self.emit(&scene, &begin, note, accept) {
             Ok(()) => self.both_ways(&begin, &mut paths, accept),
-            Err(_) => CurveEnd::Cancelled,
+            Err(Stopped::Ended(end)) => CurveEnd::Complete { below: end.clone(), above: end },
+            Err(Stopped::Cancelled) => CurveEnd::Cancelled,
         };
         let (points, newton_iterations) = (self.points, self.work.newton_iterations);
         Ok(CurveReport { end, points, paths: paths.count, newton_iterations })
@@ -557,13 +557,22 @@ impl<'a> CriticalCurve<'a> {
         note: PointNote,
         accept: AcceptPoint<'_>,
     ) -> Result<(), Stopped> {
-        self.last.keep(place, note.codimension_two);
+        let changes = note.codimension_two;
         let mut point = critical_point::point(scene, &place.history, &place.here, note, self.work);
         point.increment.index = self.points;
         point.place = self.place;
+        match accept(point) {
+            ControlFlow::Continue(()) => {}
+            ControlFlow::Break(CurveBreak::Curve) => return Err(Stopped::Cancelled),
+            ControlFlow::Break(CurveBreak::Direction(why)) => {
+                let value = self.last.value().unwrap_or(self.range.start);
+                return Err(Stopped::Ended(DirectionEnd::Lost { value, why }));
+            }
+        }
+        self.last.keep(place, self.place, changes);
         self.points += 1;
         self.place += if self.sense < 0.0 { -1 } else { 1 };
-        if accept(point).is_break() { Err(Stopped::Cancelled) } else { Ok(()) }
+        Ok(())
     }
 
     /// The value after a step at most this long: where it can be, a whole number of longest steps from the first value.

@@ -1,7 +1,9 @@
 //! How a curve ends, and why one is not followed.
 
+use crate::continuation::critical_curve::critical_point::CurvePoint;
 use crate::continuation::critical_curve::history::traced_history::CurveRefusal;
 use crate::model::InputErrors;
+use std::ops::ControlFlow;
 
 /// How a curve ended in one direction of the parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +23,8 @@ pub enum DirectionEnd {
         value: f64,
         /// The last value before it at which the point is on a path; `None` where none is known.
         last: Option<f64>,
+        /// The first place along the curve that is not known to be on a path.
+        place: i64,
         /// How the curve ended.
         end: Box<DirectionEnd>,
     },
@@ -76,4 +80,16 @@ pub enum CurveFailure {
     /// There is no critical point to follow.
     #[error(transparent)]
     Refused(#[from] CurveRefusal),
+}
+
+/// Receives the points of a curve in the order in which they are found; breaks to end it, or to refuse a point.
+pub type AcceptPoint<'a> = &'a mut dyn FnMut(CurvePoint) -> ControlFlow<CurveBreak>;
+
+/// Why a receiver of points takes no more.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum CurveBreak {
+    /// It needs none.
+    Curve,
+    /// This point is none of the curve, which ends before it in this direction: why, in words.
+    Direction(String),
 }

@@ -18,6 +18,8 @@ const MOST_KEPT: usize = 256;
 #[derive(Clone)]
 pub(super) struct PassedCritical {
     pub parameter: f64,
+    /// Place along the curve.
+    place: i64,
     pub stage: usize,
     pub state: State,
     pub scales: StateScales,
@@ -42,7 +44,7 @@ impl LastPoints {
     }
 
     /// Keeps a point; `changes`: the curve changes there.
-    pub fn keep(&mut self, position: &CurvePosition, changes: bool) {
+    pub fn keep(&mut self, position: &CurvePosition, place: i64, changes: bool) {
         let parameter = position.here.parameter;
         let is_close = |other: f64| (other - parameter).abs() < self.close;
         if changes {
@@ -59,7 +61,7 @@ impl LastPoints {
         let here = &position.here;
         let stage = position.history.points.last().map_or(0, |point| point.stage);
         let (state, scales) = (here.critical().clone(), here.scales.clone());
-        self.points.push_back(PassedCritical { parameter, stage, state, scales, is_clear });
+        self.points.push_back(PassedCritical { parameter, place, stage, state, scales, is_clear });
     }
 
     /// The end of the direction, after one of its last points has been compared with a path of its own. Where they differ, the
@@ -81,7 +83,14 @@ impl LastPoints {
             let middle = on.midpoint(off);
             if paths.has(clear[middle]) { on = middle + 1 } else { off = middle }
         }
-        let last = off.checked_sub(1).map(|on| clear[on].parameter);
-        DirectionEnd::OffPath { value: clear[off].parameter, last, end: Box::new(end) }
+        let on = off.checked_sub(1).map(|on| clear[on]);
+        let first = clear[off];
+        let place = on.map_or(first.place, |on| on.place + first.place.signum());
+        DirectionEnd::OffPath { value: first.parameter, last: on.map(|on| on.parameter), place, end: Box::new(end) }
+    }
+
+    /// The value of the last point.
+    pub fn value(&self) -> Option<f64> {
+        self.points.back().map(|one| one.parameter)
     }
 }

@@ -46,5 +46,5 @@ mod turning_point;
 
 pub use critical_point::CurvePoint;
 pub use curve::{CriticalCurve, CurveRange};
-pub use curve_outcome::{CurveEnd, CurveFailure, CurveReport, DirectionEnd};
+pub use curve_outcome::{CurveBreak, CurveEnd, CurveFailure, CurveReport, DirectionEnd};
 pub use history::traced_history::CurveStart;

@@ -9,6 +9,7 @@ use crate::branching::directions::trial_step::later_sign;
 use crate::branching::selection::{second_order, selection_rule};
 use crate::branching::uniqueness::all_slipping::all_slipping_directions;
 use crate::continuation::increment::mpec_verification;
+use crate::continuation::increment::tolerances::SIMULTANEOUS_LENGTH;
 use crate::continuation::path_state::event_descriptions::describe_change;
 use crate::continuation::path_state::path_context::PathTrace;
 use crate::continuation::path_state::tolerances::{REACTION_ROUND_OFF, SAME_STATE};
@@ -285,11 +286,32 @@ fn undetermined(_trace: &PathTrace<'_>) -> Arrival {
     Arrival { point, options: Vec::new(), taken: None, stop, stage_ends: false, unconfirmed: false }
 }
 
+/// Reactions that vanish along the incoming direction within the rounding of the event's location vanish there, too. Where a
+/// stretch of a beam comes to lie on its obstacle, the reaction at its end vanishes with all of its gaps; these are of
+/// second order in the distances of the nodes, and locate the point so much worse.
+fn unload_together(trace: &PathTrace<'_>, incoming: &Rate, standings: &mut [Standing]) {
+    let (loading, state) = (trace.loading(), &trace.at.here.state);
+    for (contact, standing) in standings.iter_mut().enumerate() {
+        let is_closed = match standing {
+            Standing::Settled(mode) => mode.is_active(),
+            Standing::OnCone { .. } => true,
+            Standing::Touching | Standing::Cornered { .. } => false,
+        };
+        // The forces of a node between several obstacles vanish together.
+        let is_alone = || !loading.corners.iter().any(|corner| corner.contacts.contains(&contact));
+        let vanishes = || state.reactions[contact].normal <= -SIMULTANEOUS_LENGTH * incoming.reactions[contact].normal;
+        if is_closed && vanishes() && is_alone() {
+            *standing = Standing::Touching;
+        }
+    }
+}
+
 /// A contact has reached the end of its mode: lists the directions and takes one.
 fn contact_change(trace: &mut PathTrace<'_>, came: &Came) -> Arrival {
     let Came { rate: incoming, step, stopped, nearby, .. } = came;
     trace.at.counts.contact_changes += 1;
-    let standings = trace.standings(&trace.at.here.state);
+    let mut standings = trace.standings(&trace.at.here.state);
+    unload_together(trace, incoming, &mut standings);
     for (reaction, standing) in trace.at.here.state.reactions.iter_mut().zip(&standings) {
         // The event was located to round-off; the remainder of a reaction that is zero there is dropped.
         if *standing == Standing::Touching && reaction.size() <= REACTION_ROUND_OFF * trace.at.totals.force_scale {

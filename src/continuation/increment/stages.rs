@@ -92,10 +92,12 @@ fn rise(trace: &PathTrace<'_>, decision: &mut Decision) {
     for option in decision.options.iter_mut().filter(|option| option.load_sign == 0.0 && !option.mechanism) {
         option.load_sign = later_sign(loading, state, &option.rate, &option.modes, rules.force_scale).sign;
     }
-    let falls = |index: usize| decision.options[index].load_sign < 0.0;
-    if let Some(taken) = decision.taken.filter(|taken| falls(*taken)) {
-        let rises = |index: usize| decision.options[index].load_sign > 0.0 && !decision.options[index].mechanism;
-        let rising = selection_rule::preferred(&decision.options, &decision.options[taken].rate, rules, rises);
+    let rises = |index: &usize| decision.options[*index].load_sign > 0.0 && !decision.options[*index].mechanism;
+    let mut open: Vec<usize> = (0..decision.options.len()).filter(rises).collect();
+    selection_rule::retain_most_stable(loading, state, &decision.options, &mut open, rules);
+    if let Some(taken) = decision.taken.filter(|taken| !open.contains(taken)) {
+        let along = &decision.options[taken].rate;
+        let rising = selection_rule::preferred(&decision.options, along, rules, |index| open.contains(&index));
         decision.taken = rising.or(decision.taken);
     }
 }

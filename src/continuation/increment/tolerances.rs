@@ -129,3 +129,9 @@ pub(crate) const SMALLEST_COMPLETED_SHARE: f64 = 0.5;
 /// point is accurate to about 1e-9 times what the path bends there; forces that do as little work as this drive a motion
 /// that is a hundred million times as fast as they are, which no step resolves.
 pub(crate) const NO_WORK: f64 = 1e-8;
+
+/// Arc length before the zero of a reaction within which the zero belongs to an event that is located before it. An event
+/// is located to the rounding of its quantity over its rate: some 1e-14 over 1e-5 for the gap of a node of a finely
+/// divided beam. Points are accepted with an error of 1e-9, and a reaction that vanishes 1e-8 further on cannot be told
+/// from one that vanishes there.
+pub(crate) const SIMULTANEOUS_LENGTH: f64 = 1e-8;

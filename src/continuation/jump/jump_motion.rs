@@ -1,10 +1,11 @@
 //! The motion of a jump: its beginning, the lengths of its time steps, its end at rest.
 
 use crate::continuation::jump::held_structure::{Springs, is_damped, length};
-use crate::continuation::jump::time_step::{Moved, NotMoved, TimeStep, TimeStepScene};
+use crate::continuation::jump::time_step::{Moved, NotMoved, TimeStep, TimeStepScene, unbalanced};
 use crate::continuation::jump::tolerances::{
-    ACCEPTED_MULTIPLE, DISTANCE_AT_REST, FARTHEST, LARGEST_GROWTH, LARGEST_REDUCTION, LEAST_LENGTH, PUSH, RAISED_LOAD,
-    SAFETY, SHORT_WAY, SHORTEST_TIME_STEP, SPEED_AT_REST, SPEED_STOPPED, WAY_TO_LOWER,
+    ACCEPTED_MULTIPLE, BALANCED, DISTANCE_AT_REST, FARTHEST, LARGEST_GROWTH, LARGEST_REDUCTION, LEAST_LENGTH,
+    LENGTH_BY_FORCE, PUSH, RAISED_LOAD, SAFETY, SHORT_WAY, SHORTEST_TIME_STEP, SPEED_AT_REST, SPEED_STOPPED,
+    WAY_TO_LOWER,
 };
 use crate::continuation::path_state::contact_search;
 use crate::continuation::path_state::motion::JumpProgress;
@@ -70,8 +71,11 @@ pub(super) fn advance(
     let structure = &trace.scene.structure;
     let speed = length(structure, &motion.velocity);
     let slows = motion.largest_speed > 0.0 && speed <= SPEED_AT_REST * motion.largest_speed;
-    if slows && speed <= motion.rests_below {
-        return rest(trace, motion, speed, scene);
+    if slows
+        && speed <= motion.rests_below
+        && let Some(advance) = rest(trace, &motion, speed, settings, scene)?
+    {
+        return Ok(advance);
     }
     if motion.travelled > FARTHEST {
         return Err(NoRest::MovesAway.into());
@@ -87,7 +91,10 @@ pub(super) fn advance(
     };
     let by_load = load_change.abs() * size_of_load(trace) / (stiffness + 1.0);
     let by_push = if motion.steps == 0 && !motion.push.is_empty() { PUSH } else { 0.0 };
-    let expected = (speed * motion.time_step).max(by_load).max(by_push).max(LEAST_LENGTH);
+    // Mass that has been stopped is accelerated by what is out of balance.
+    let is_stopped = motion.steps > 0 && speed <= SPEED_STOPPED * motion.largest_speed;
+    let by_force = if is_stopped { LENGTH_BY_FORCE * out_of_balance(trace) } else { 0.0 };
+    let expected = (speed * motion.time_step).max(by_load).max(by_push).max(by_force).max(LEAST_LENGTH);
     let springs = Some(Springs { stiffness, places: &places });
     let shorter = |trace: &mut PathTrace<'_>, factor: f64| {
         let time_step = motion.time_step * factor;
@@ -134,13 +141,15 @@ pub(super) fn advance(
     Ok(Advance::Moving)
 }
 
-/// Seeks the state at rest from a motion that has slowed down: first at the raised load, then at the load itself.
+/// Seeks the state at rest from a motion that has slowed down: first at the raised load, then at the load itself; `None`
+/// where the motion goes on, as mass that obstacles have stopped is pushed off again.
 fn rest(
     trace: &mut PathTrace<'_>,
-    motion: JumpProgress,
+    motion: &JumpProgress,
     speed: f64,
+    settings: &JumpMotion,
     scene: &mut TimeStepScene,
-) -> Result<Advance, JumpEnd> {
+) -> Result<Option<Advance>, JumpEnd> {
     let settled = settle(trace, scene, (motion.raised, 0.0), speed)?;
     let structure = &trace.scene.structure;
     let is_near = |moved: &Moved| {
@@ -150,20 +159,33 @@ fn rest(
         let raised = motion.raised;
         accept(trace, settled, motion.clone());
         if raised == 0.0 {
-            return Ok(Advance::AtRest);
+            return Ok(Some(Advance::AtRest));
         }
         if let Some(moved) = settle(trace, scene, (raised, -raised), raised)? {
-            accept(trace, moved, JumpProgress { raised: 0.0, ..motion });
-            return Ok(Advance::AtRest);
+            accept(trace, moved, JumpProgress { raised: 0.0, ..motion.clone() });
+            return Ok(Some(Advance::AtRest));
         }
     }
     if speed <= SPEED_STOPPED * motion.largest_speed {
+        if settings.kind == JumpMotionKind::Inertial && is_accelerated(trace) {
+            return Ok(None);
+        }
         return Err(NoRest::Unstable.into());
     }
     if let Some(motion) = &mut trace.at.motion {
         motion.rests_below = 0.3 * speed;
     }
-    Ok(Advance::Again)
+    Ok(Some(Advance::Again))
+}
+
+/// Whether forces out of balance accelerate the mass of the structure.
+fn is_accelerated(trace: &PathTrace<'_>) -> bool {
+    out_of_balance(trace) > BALANCED * trace.rules().force_scale
+}
+
+/// The size of the force that is out of balance.
+fn out_of_balance(trace: &PathTrace<'_>) -> f64 {
+    length(&trace.scene.structure, &unbalanced(trace.loading(), &trace.at.here.state))
 }
 
 /// The stable state of equilibrium near the present one, at the raised load or with a change of it.
@@ -173,7 +195,8 @@ fn settle(
     (raised, load_change): (f64, f64),
     expected: f64,
 ) -> Result<Option<Moved>, JumpEnd> {
-    let still = TimeStep { springs: None, raised, load_change, expected: expected.max(LEAST_LENGTH) };
+    let expected = expected.max(out_of_balance(trace)).max(LEAST_LENGTH);
+    let still = TimeStep { springs: None, raised, load_change, expected };
     match scene.take(trace, &still) {
         Ok(moved) => Ok(Some(moved).filter(|moved| moved.is_stable != Some(false))),
         Err(NotMoved::TooLong) => Ok(None),

@@ -195,7 +195,7 @@ fn bound(inner: &PathTrace<'_>) -> f64 {
 }
 
 /// The force that is out of balance at a state, over all degrees of freedom; none along supported ones.
-fn unbalanced(loading: Loading<'_>, state: &State) -> Vec<f64> {
+pub(super) fn unbalanced(loading: Loading<'_>, state: &State) -> Vec<f64> {
     let structure = loading.structure;
     let mut force = vec![0.0; structure.freedoms()];
     node_contact_forces::write_out_of_balance(loading, state, &mut force);

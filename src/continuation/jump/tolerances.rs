@@ -59,3 +59,11 @@ pub(crate) const STORED_SHARE: f64 = 1e-3;
 /// Length (in length scales) by which a structure is pushed off an unstable state. Its energy is a hundred-millionth of the
 /// stiffness scale.
 pub(crate) const PUSH: f64 = 1e-4;
+
+/// Force out of balance, over the force scale, up to which mass at rest stays there. Time steps are in balance within
+/// 1e-10; and a motion that such a force begins takes a thousand times as long as one of the structure's own.
+pub(crate) const BALANCED: f64 = 1e-6;
+
+/// Length of the path of a time step from a stop, over the force that is released: obstacles may hold all motion until
+/// most of the force is gone, and a shorter path would have a load that is larger than all stiffnesses by as much.
+pub(crate) const LENGTH_BY_FORCE: f64 = 1e-2;

@@ -68,14 +68,36 @@ impl CurveFound {
     }
 }
 
+impl CurveFound {
+    /// The same without the points that are not known to be on a path.
+    pub fn known_on_path(&self) -> Self {
+        let is_known = |row: &&CurveRow| self.summary.as_ref().is_none_or(|summary| !summary.is_off_path(row));
+        Self { rows: self.rows.iter().filter(is_known).cloned().collect(), ..self.clone() }
+    }
+}
+
+impl CurveSummary {
+    /// Whether a point of the curve is not known to be on a path.
+    pub fn is_off_path(&self, row: &CurveRow) -> bool {
+        self.off_path_from.is_some_and(|from| row.place >= from) || self.off_path_to.is_some_and(|to| row.place <= to)
+    }
+}
+
 /// How a curve ended.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct CurveSummary {
     /// Why it ends towards smaller values, in words; null where it was cancelled before.
     pub ends_below: Option<String>,
     /// Why it ends towards larger values.
     pub ends_above: Option<String>,
+    /// The place from which on, towards larger values, points are not known to be on a path: one traced at the end of the
+    /// curve was another. Null where it was the same.
+    #[serde(default)]
+    pub off_path_from: Option<i64>,
+    /// The same towards smaller values: points at this place and before.
+    #[serde(default)]
+    pub off_path_to: Option<i64>,
     /// Paths that were traced for it.
     pub paths: u64,
     /// Newton iterations, without those of the paths.

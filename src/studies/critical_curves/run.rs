@@ -3,7 +3,7 @@
 use crate::check::measure::Judge;
 use crate::continuation::critical_curve::critical_point::in_words;
 use crate::continuation::critical_curve::{
-    CriticalCurve, CurveEnd, CurveFailure, CurvePoint, CurveRange, CurveReport, CurveStart, DirectionEnd,
+    CriticalCurve, CurveBreak, CurveEnd, CurveFailure, CurvePoint, CurveRange, CurveReport, CurveStart, DirectionEnd,
 };
 use crate::continuation::scene::Scene;
 use crate::model::{InputError, InputErrors, ParameterCurve};
@@ -21,8 +21,7 @@ pub type AcceptRow<'a> = &'a mut dyn FnMut(CurveRow) -> ControlFlow<()>;
 /// Follows a curve; every point is passed to `accept`, and none is kept. The findings are reproducible, bit for bit.
 ///
 /// # Errors
-/// Mistakes of the model at its own value; a path without this limit point, or one that cannot be followed; a point that the
-/// measure refuses, after those that it does not.
+/// Mistakes of the model at its own value; a path without this limit point, or one that cannot be followed.
 pub fn run(curve: &ParameterCurve, cancel: &CancelFlag, accept: AcceptRow<'_>) -> Result<CurveSummary, InputErrors> {
     let request_at = |value: f64| {
         let mut request = curve.request(value)?;
@@ -37,19 +36,22 @@ pub fn run(curve: &ParameterCurve, cancel: &CancelFlag, accept: AcceptRow<'_>) -
         (Some(index), _) => CurveStart::Increment(index),
         (None, asked) => CurveStart::LimitPoint(asked.unwrap_or(1)),
     };
-    let mut off = None;
     let mut take = |point: CurvePoint| {
         // The point was found with this model.
-        let Ok(request) = request_at(point.value) else { return ControlFlow::Break(()) };
+        let Ok(request) = request_at(point.value) else { return ControlFlow::Break(CurveBreak::Curve) };
         let mut judge = Judge::new(&request, point.displacement_scale, &point.load_scales);
         let measure = judge.judge_state(&point.increment, &point.stage_ends);
         let largest = measure.largest_of_state();
         if largest > MEASURE_BAR || largest.is_nan() {
-            off = Some((point.value, largest));
-            return ControlFlow::Break(());
+            let why = format!(
+                "the point at {} is off the measure by {largest:.1e}, more than {MEASURE_BAR:.0e}: the history of the \
+                 points before does not hold there",
+                in_words(point.value)
+            );
+            return ControlFlow::Break(CurveBreak::Direction(why));
         }
         let Increment { index, stage, load_factor, displacements, contacts, point: kind, .. } = point.increment;
-        accept(CurveRow {
+        let accepted = accept(CurveRow {
             index,
             place: point.place,
             value: point.value,
@@ -62,23 +64,34 @@ pub fn run(curve: &ParameterCurve, cancel: &CancelFlag, accept: AcceptRow<'_>) -
             codimension_two: point.codimension_two,
             from_path: point.from_path,
             measure,
-        })
+        });
+        accepted.map_break(|()| CurveBreak::Curve)
     };
     let report = CriticalCurve::new(&family, range, cancel.clone()).follow(start, &mut take);
-    if let Some((value, largest)) = off {
-        let detail = format!(
-            "the point of the curve at {} is off the measure by {largest:.1e}, more than {MEASURE_BAR:.0e}: the history of \
-             the point does not hold for this parameter; sweep it instead",
-            in_words(value)
-        );
-        return Err(InputErrors(vec![InputError::new("/curve/parameter", detail)]));
+    let CurveReport { end, points, paths, newton_iterations } = report.map_err(refused)?;
+    let of_work = CurveSummary { paths, newton_iterations, ..CurveSummary::default() };
+    match end {
+        CurveEnd::Complete { above: DirectionEnd::Lost { why, .. }, .. } if points == 0 => {
+            Err(InputErrors(vec![InputError::new("/curve/parameter", why)]))
+        }
+        CurveEnd::Complete { below, above } => Ok(CurveSummary {
+            ends_below: Some(told(&below)),
+            ends_above: Some(told(&above)),
+            off_path_from: off_path(&above),
+            off_path_to: off_path(&below),
+            complete: true,
+            ..of_work
+        }),
+        CurveEnd::Cancelled => Ok(of_work),
     }
-    let CurveReport { end, paths, newton_iterations, .. } = report.map_err(refused)?;
-    let (ends_below, ends_above, complete) = match end {
-        CurveEnd::Complete { below, above } => (Some(told(&below)), Some(told(&above)), true),
-        CurveEnd::Cancelled => (None, None, false),
-    };
-    Ok(CurveSummary { ends_below, ends_above, paths, newton_iterations, complete })
+}
+
+/// The first place along the curve, in a direction, that is not known to be on a path.
+fn off_path(end: &DirectionEnd) -> Option<i64> {
+    match end {
+        DirectionEnd::OffPath { place, .. } => Some(*place),
+        _ => None,
+    }
 }
 
 fn refused(failure: CurveFailure) -> InputErrors {
@@ -95,7 +108,7 @@ fn told(end: &DirectionEnd) -> String {
         DirectionEnd::Lost { value, why } => {
             format!("the curve does not go on past {}: {why}", in_words(*value))
         }
-        DirectionEnd::OffPath { value, last, end } => {
+        DirectionEnd::OffPath { value, last, end, .. } => {
             let since = last.map_or_else(
                 || "before it".to_owned(),
                 |last| format!("between {} and {}", in_words(last), in_words(*value)),

@@ -6,7 +6,8 @@ use crate::output::csv::{Cells, CsvRow};
 use crate::studies::critical_curves::row::{CurveFound, CurveRow};
 use std::fmt::Write;
 
-const COLUMNS: [&str; 7] = ["load_factor", "kind", "stage", "codimension_two", "from_path", "largest_error", "event"];
+const COLUMNS: [&str; 8] =
+    ["load_factor", "kind", "stage", "codimension_two", "from_path", "off_path", "largest_error", "event"];
 
 /// One line a point, in order along the curve: its number, the value under its pointer, the load factor, and the displacements under
 /// the names of their nodes.
@@ -30,6 +31,7 @@ pub fn csv(found: &CurveFound) -> serde_json::Result<String> {
         line.text(&row.stage);
         line.raw(&row.codimension_two.to_string());
         line.raw(&row.from_path.to_string());
+        line.raw(&is_off_path(found, row).to_string());
         line.number(row.measure.largest_of_state());
         line.text(row.event.as_deref().unwrap_or_default());
         row.displacements.values().flatten().for_each(|value| line.number(*value));
@@ -49,7 +51,9 @@ pub fn text(found: &CurveFound) -> serde_json::Result<String> {
     let parameter = InputError::new(found.curve.parameter.as_str(), "").place();
     let mut cells = vec![["", &parameter, "load factor", "kind", "event"].map(str::to_owned).to_vec()];
     for row in &found.rows {
-        let mark = if row.codimension_two {
+        let mark = if is_off_path(found, row) {
+            "?"
+        } else if row.codimension_two {
             "x"
         } else if row.from_path {
             "o"
@@ -70,15 +74,22 @@ pub fn text(found: &CurveFound) -> serde_json::Result<String> {
     columns.lines().for_each(|line| text.extend([line.trim_end(), "\n"]));
     let Some(summary) = &found.summary else { return Ok(text) };
     let ends = [("smaller", &summary.ends_below), ("larger", &summary.ends_above)];
+    let off = found.rows.iter().any(|row| summary.is_off_path(row));
+    let off = if off { "; ?: on no path, as far as is known" } else { "" };
     let _ = writeln!(
         text,
-        "\nx: a change of kind, or of the path; o: found on a path traced for it; paths traced in all: {}",
+        "\nx: a change of kind, or of the path; o: found on a path traced for it{off}; paths traced in all: {}",
         summary.paths
     );
     for (side, end) in ends {
         let _ = writeln!(text, "from the start towards {side} values: {}", end.as_deref().unwrap_or("cancelled"));
     }
     Ok(text)
+}
+
+/// Whether the end of the curve tells that a point of it is not known to be on a path.
+fn is_off_path(found: &CurveFound, row: &CurveRow) -> bool {
+    found.summary.as_ref().is_some_and(|summary| summary.is_off_path(row))
 }
 
 /// `node.x`, `node.y`, ..., of rotations `node.rz` or `node.rx`, ...

@@ -38,6 +38,8 @@ fn color(kind: PointKind) -> RGBColor {
 /// # Errors
 /// The curve has no points.
 pub fn svg(found: &CurveFound) -> Result<String, PlotError> {
+    // Points that are on no path are told of, not drawn.
+    let found = &found.known_on_path();
     if found.rows.is_empty() {
         return Err(PlotError::NoPoints);
     }

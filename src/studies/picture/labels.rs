@@ -8,6 +8,8 @@ const CELL: i32 = 30;
 const CURVE: u32 = 14;
 const MARKER: u32 = 20;
 const LETTER: u32 = 60;
+/// The cost of standing nearer to another marker than to the letter's own.
+const STRAY: u32 = 50;
 /// The cost of leaving the map.
 const OUTSIDE: u32 = 400;
 /// Distances of the centre of a letter from its point, in fine units, and their costs.
@@ -21,6 +23,7 @@ pub struct Map {
     corner: Place,
     columns: i32,
     cells: Vec<u32>,
+    markers: Vec<Place>,
 }
 
 impl Map {
@@ -28,7 +31,12 @@ impl Map {
     pub fn new(corner: Place, opposite: Place) -> Self {
         let columns = (opposite.0 - corner.0) / CELL + 1;
         let rows = (opposite.1 - corner.1) / CELL + 1;
-        Self { corner, columns, cells: vec![0; usize::try_from(columns * rows).unwrap_or_default()] }
+        Self {
+            corner,
+            columns,
+            cells: vec![0; usize::try_from(columns * rows).unwrap_or_default()],
+            markers: Vec::new(),
+        }
     }
 
     pub fn add_line(&mut self, from: Place, to: Place) {
@@ -44,6 +52,7 @@ impl Map {
 
     pub fn add_marker(&mut self, middle: Place, size: i32) {
         self.add_box(middle, (size, size), MARKER);
+        self.markers.push(middle);
     }
 
     /// Finds the best place for a letter, given half its size, and occupies it.
@@ -54,7 +63,8 @@ impl Map {
                 let angle = std::f64::consts::TAU * (f64::from(direction) + 2.0) / f64::from(DIRECTIONS);
                 let offset = |part: f64| (f64::from(distance) * part).round() as i32;
                 let middle = (point.0 + offset(angle.cos()), point.1 - offset(angle.sin()));
-                let cost = far + self.cost(middle, half);
+                let stray = if self.is_stray(middle, point) { STRAY } else { 0 };
+                let cost = far + stray + self.cost(middle, half);
                 if cost < best.0 {
                     best = (cost, middle);
                 }
@@ -62,6 +72,15 @@ impl Map {
         }
         self.add_box(best.1, half, LETTER);
         best.1
+    }
+
+    /// Whether a letter there would be taken for that of another marker.
+    fn is_stray(&self, middle: Place, point: Place) -> bool {
+        let square = |from: &Place| {
+            let [x, y] = [i64::from(middle.0 - from.0), i64::from(middle.1 - from.1)];
+            x * x + y * y
+        };
+        self.markers.iter().any(|marker| square(marker) < square(&point))
     }
 
     fn add_box(&mut self, middle: Place, half: Place, cost: u32) {
@@ -105,5 +124,17 @@ mod tests {
         assert!((first.0 - second.0).abs() > 120 || (first.1 - second.1).abs() > 160, "{first:?} {second:?}");
         let corner = map.take_room((0, 0), (60, 80));
         assert!(corner.0 >= 60 && corner.1 >= 80, "{corner:?}");
+    }
+
+    #[test]
+    fn a_letter_stands_nearest_to_its_own_marker() {
+        let mut map = Map::new((0, 0), (6000, 6000));
+        let markers = [(3000, 3000), (3040, 2760), (2980, 3240)];
+        markers.iter().for_each(|marker| map.add_marker(*marker, 60));
+        for own in markers {
+            let (x, y) = map.take_room(own, (60, 80));
+            let square = |marker: &Place| (marker.0 - x).pow(2) + (marker.1 - y).pow(2);
+            assert_eq!(markers.iter().min_by_key(|marker| square(marker)), Some(&own), "{x} {y}");
+        }
     }
 }

@@ -11,6 +11,9 @@ const LEAST_CHANGE: f64 = 0.5;
 /// Intervals that are shorter than this part of the whole are not divided.
 const SHORTEST: f64 = 1e-9;
 
+/// Change of a response, relative to its size, that may be the error of an increment.
+const ROUND_OFF: f64 = 1e-9;
+
 /// An interval between two neighbouring values.
 struct ParameterInterval {
     middle: f64,
@@ -29,7 +32,10 @@ fn response(variation: &Variation, row: &Row) -> Value {
 
 fn change(one: &Value, other: &Value) -> f64 {
     match (one.as_f64(), other.as_f64()) {
-        (Some(one), Some(other)) => (one - other).abs(),
+        (Some(one), Some(other)) => {
+            let change = (one - other).abs();
+            if change <= ROUND_OFF * one.abs().max(other.abs()) { 0.0 } else { change }
+        }
         _ if one == other => 0.0,
         _ => f64::INFINITY,
     }
@@ -118,6 +124,8 @@ mod tests {
         assert!(further_values(&variation, &rows[..1], 4).is_empty());
         let close = [row(0, 0.4, Some(1.0)), row(1, 0.45, Some(2.0))];
         assert_eq!(further_values(&variation, &close, 1), [json!(0.425)]);
+        let constant = [row(0, 0.1, Some(1.677_523_232_203_3)), row(1, 0.3, Some(1.677_523_232_203_301))];
+        assert!(further_values(&variation, &constant, 4).is_empty(), "round-off");
         for (one, other) in [(-3.0, 1e6), (1e-20, 1.1e-20), (1.0, 1.0 + 1e-12), (-2e300, 1e300)] {
             let middle = middle(one, other);
             assert!(one < middle && middle < other, "{middle} between {one} and {other}");

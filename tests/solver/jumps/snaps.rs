@@ -1,6 +1,6 @@
 //! Jumps beside exact states and beside states of paths that were followed past them.
 
-use super::jump;
+use super::{jump, von_mises};
 use crate::common::paths::{close, scene_file, trace, typed};
 use arcslip::continuation::path::checkpoint::Checkpoint;
 use arcslip::continuation::path::iterator::Path;
@@ -352,5 +352,33 @@ fn a_perfect_truss_jumps_where_it_loses_its_stability() {
         let (increments, _) = trace(&inertial);
         let at_rest = jump(&increments).1;
         close(at_rest.displacements["top"][1], after.displacements["top"][1], 1e-9, "the same state");
+    }
+}
+
+/// A stop at which the apex arrives in full swing, and holds all motion for a step: it is pushed off again, and comes to the
+/// rest of the motion without mass, `(0.5 + y)(1/l - 1/L) = s/2`.
+#[test]
+fn a_structure_that_a_stop_holds_in_its_motion_is_not_at_rest_there() {
+    let mut rests = Vec::new();
+    for (kind, ratio) in
+        [("overdamped", None), ("inertial", Some(1.0)), ("inertial", Some(0.1)), ("inertial", Some(0.02))]
+    {
+        for stop in [-0.60, -0.62, -0.64, -0.65, -0.68, -0.70, -0.75] {
+            let stages = json!([{"name": "press", "forces": {"apex": [0, -1]}, "control": "load", "until": {"load_above": 0.039}}]);
+            let mut motion = json!({"kind": kind});
+            if let Some(ratio) = ratio {
+                motion["damping_ratio"] = json!(ratio);
+            }
+            let mut request = von_mises(&stages, &json!({"jump_motion": motion}));
+            request["model"]["obstacles"] = json!({"stop": {"kind": "plane", "point": [0, stop], "normal": [0, 1]}});
+            request["model"]["contacts"] = json!([{"node": "apex", "obstacle": "stop", "friction": 0}]);
+            let (increments, report) = trace(&typed(request));
+            assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{kind} {ratio:?} {stop}");
+            let (_, after) = jump(&increments);
+            rests.push((after.displacements["apex"][1], stop - 0.5));
+        }
+    }
+    for (rest, stop) in &rests {
+        close(*rest, f64::max(rests[5].0, *stop), 1e-8, "the state at rest");
     }
 }

@@ -1,7 +1,7 @@
 //! Stages that begin at a limit point, and stages whose end is passed within a jump.
 
 use super::{jump, von_mises};
-use crate::common::paths::{close, trace, typed};
+use crate::common::paths::{close, scene_file, trace, typed};
 use arcslip::model::JobRequest;
 use arcslip::result::increment::PointKind;
 use arcslip::result::stop_reason::StopReason;
@@ -83,4 +83,48 @@ fn a_stage_ends_at_rest_where_its_end_is_passed_within_a_jump() {
         let begins = &increments[after.index as usize + 1];
         assert_eq!((begins.point.kind, &*begins.stage), (PointKind::Start, "next"));
     }
+}
+
+/// Klarbring's node at its nonsmooth limit point: it sticks while the pull falls or turns, as it does just below that point,
+/// though slip would dissipate. Along the slip an eigenvalue is negative.
+#[test]
+fn a_load_that_turns_at_a_nonsmooth_limit_point_goes_back_along_the_stable_branch() {
+    let request = |stages: Value| {
+        let mut request = serde_json::to_value(scene_file("klarbring")).expect("JSON");
+        let press = request["model"]["stages"][0].clone();
+        let mut all = vec![press];
+        all.extend(stages.as_array().expect("stages").iter().cloned());
+        request["model"]["stages"] = json!(all);
+        request["analysis"] = json!({"record": {"stability": true}, "max_increments": 400});
+        typed(request)
+    };
+    let pull = |value: f64| json!({"name": "pull", "forces": {"node": [value, 0]}});
+    let mut turned = pull(1.0);
+    (turned["control"], turned["history"]) = (json!("load"), json!([1.5, 0.5, 1.4]));
+    let mut limit = pull(1.0);
+    limit["until"] = json!({"limit_points": 1});
+    let mut back = pull(-1.0);
+    (back["name"], back["control"], back["until"]) = (json!("back"), json!("load"), json!({"load_above": 0.5}));
+    for stages in [json!([turned]), json!([limit, back])] {
+        let (increments, report) = trace(&request(stages));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+        for one in &increments {
+            assert!(one.displacements["node"].iter().all(|part| part.abs() < 1e-12), "it sticks: {one:?}");
+            assert_eq!(one.stability.as_ref().and_then(|stability| stability.negative_eigenvalues), Some(0));
+        }
+    }
+}
+
+/// At the limit load of von Mises' truss a support moves outwards: of two branches along which its motion goes on the truss
+/// takes the stable one, on which it rises.
+#[test]
+fn a_support_that_moves_at_a_limit_point_takes_the_stable_branch() {
+    let first = json!({"name": "up", "forces": {"apex": [0, -1]}, "until": {"limit_points": 1}});
+    let on = json!({"name": "on", "displacements": {"left": [0.05, 0]}, "control": "load", "until": {"load_above": 1}});
+    let (increments, report) = trace(&typed(von_mises(&json!([first, on]), &json!({"record": {"stability": true}}))));
+    assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+    let [start, end] =
+        [increments.iter().find(|one| &*one.stage == "on"), increments.last()].map(|one| one.expect("one"));
+    assert!(end.displacements["apex"][1] > start.displacements["apex"][1] + 0.1, "{end:?}");
+    assert_eq!(end.stability.as_ref().and_then(|stability| stability.negative_eigenvalues), Some(0));
 }

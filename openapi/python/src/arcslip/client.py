@@ -354,7 +354,11 @@ class Job(Resource):
         self.refresh()
         if self.record["status"] == "failed":
             raise JobFailed(f"job {self.id} failed: {self.record.get('error')}")
-        return Path(self.request, increments, self.record.get("report"), self.record.get("stop_reason"))
+        path = Path(self.request, increments, self.record.get("report"), self.record.get("stop_reason"))
+        parent = self.record.get("parent")
+        if parent:
+            path.branch = f"direction {parent['direction']} at increment {parent['increment']} of job {parent['job']}"
+        return path
 
     def follow(
         self, increment: int, direction: int, max_increments: Optional[int] = None, *, key: Optional[str] = None
@@ -441,20 +445,23 @@ class Curve(Resource):
 
     def to_frame(self) -> Any:
         """The points as a table of pandas: `value`, `load_factor`, `kind`, `codimension_two`, `event`, and the displacements in
-        columns such as `tip.x`."""
+        columns such as `tip.x`. `off_path` marks the points past one that a path of its own does not have."""
         import pandas
 
         table = []
         is_plane = self.refresh()["plan"]["dimension"] == 2
         axes = ("x", "y", "rz") if is_plane else ("x", "y", "z", "rx", "ry", "rz")
-        for row in self.rows():
+        rows, report = self.rows(), self.report()
+        first, last = (report.get(name) for name in ("off_path_from", "off_path_to"))
+        for row in rows:
             own = {name: row.get(name) for name in ("index", "value", "load_factor", "kind", "stage", "event")}
             moved = {
                 f"{node}.{axis}": component
                 for node, components in row["displacements"].items()
                 for axis, component in zip(axes, components)
             }
-            table.append({**own, "codimension_two": bool(row.get("codimension_two")), **moved})
+            off = (first is not None and row["place"] >= first) or (last is not None and row["place"] <= last)
+            table.append({**own, "codimension_two": bool(row.get("codimension_two")), "off_path": off, **moved})
         return pandas.DataFrame(table)
 
     def report(self) -> Dict[str, Any]:

@@ -86,7 +86,8 @@ class Model:
         held = [components] if components in known else list(components) or list("xyz"[: self.dimension])
         unknown = [component for component in held if component not in known]
         if unknown:
-            raise ValueError(f"{unknown[0]!r} is no component; known are {', '.join(known)}")
+            given = components if isinstance(components, str) else unknown[0]
+            raise ValueError(f"{given!r} is no component; known are {', '.join(known)}, and all displacements without any")
         several = [nodes] if isinstance(nodes, str) or not isinstance(nodes, Iterable) else nodes
         for node in several:
             own = self._supports.setdefault(self.node_name(node), [])
@@ -116,9 +117,11 @@ class Model:
         nodes = [self.node_name(first), self.node_name(second)]
         return self._element({"kind": "bar", "nodes": nodes, "axial_stiffness": plain(axial_stiffness), **plain(more)})
 
-    def bars(self, pairs: Iterable[Sequence[Node]], axial_stiffness: Union[float, Vector], **more: Any) -> List[int]:
+    def bars(self, pairs: Iterable[Sequence[Node]], axial_stiffness: Union[float, Vector, None] = None, **more: Any) -> List[int]:
         """Adds bars from pairs of nodes, by name or by place. `axial_stiffness`, and each of the other members, is one
         value for all of them, or a list or an array with one for each."""
+        if axial_stiffness is None:
+            raise TypeError("bars need their axial stiffness EA, Young's modulus times area: axial_stiffness=...")
         joined = [plain(list(pair)) if not hasattr(pair, "tolist") else pair.tolist() for pair in pairs]
         for pair in joined:
             if not isinstance(pair, list) or len(pair) != 2:
@@ -306,7 +309,9 @@ class Model:
         for key, pattern in (("forces", forces), ("displacements", displacements)):
             if pattern is not None:
                 if not isinstance(pattern, Mapping):
-                    raise TypeError(f"{key} are a dict from nodes to vectors; found {pattern!r}")
+                    found = f"{pattern!r}"
+                    shown = found if len(found) <= 80 else f"{found[:80]}..."
+                    raise TypeError(f"{key} are a dict from nodes to vectors; found {shown}")
                 stage[key] = {self.node_name(node): plain(vector) for node, vector in pattern.items()}
         if moments is not None:
             stage["moments"] = {self.node_name(node): plain(moment) for node, moment in moments.items()}
@@ -384,7 +389,11 @@ class Model:
         if isinstance(mesh, (str, os.PathLike)):
             import meshio
 
-            mesh = meshio.read(mesh)
+            try:
+                mesh = meshio.read(mesh)
+            except SystemExit as error:
+                # It ends the program where it finds what it does not know, such as texts in files for ParaView.
+                raise ValueError(f"meshio cannot read {os.fspath(mesh)!r}") from error
         if material is not None and axial_stiffness is None:
             return _solids_of(cls, mesh, dimension, prefix, material, more)
         if material is not None or axial_stiffness is None:

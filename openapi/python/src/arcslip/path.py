@@ -35,6 +35,8 @@ class Path:
         self.report = dict(report) if report else {}
         #: Why the path ended, such as `stages_completed`.
         self.stop_reason = stop_reason
+        #: What tells a path that follows a direction of another one from that; empty for others.
+        self.branch = ""
 
     def __len__(self) -> int:
         return len(self.increments)
@@ -51,7 +53,9 @@ class Path:
     def __getitem__(self, place: Union[int, slice]) -> Any:
         """An increment, or a part of the path."""
         if isinstance(place, slice):
-            return Path(self.request, self.increments[place], self.report, self.stop_reason)
+            part = Path(self.request, self.increments[place], self.report, self.stop_reason)
+            part.branch = self.branch
+            return part
         return self.increments[place]
 
     @property

@@ -93,6 +93,8 @@ def export(path: Path, file: Union[str, "os.PathLike[str]"], program: Optional[s
         lines = os.path.join(folder, "path.ndjson")
         path.save(lines)
         command = [find_program(program), "export", "-", lines, option, os.path.abspath(file)]
+        if path.branch and option == "--out":
+            command += ["--branch", path.branch]
         asked = text_of(path.request)
         run = subprocess.run(command, input=asked, capture_output=True, text=True, encoding="utf-8")
     if run.returncode != 0:

@@ -25,12 +25,14 @@ const BYTES_OF_A_POINT: usize = 1_000;
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub struct PictureParameters {
-    /// The displacement to draw, `NODE.COMPONENT` such as `tip.x`. Default: the largest one.
+    /// What to draw: a displacement `NODE.COMPONENT`, such as `tip.x`, or a column of `path.csv`. Default: the largest
+    /// displacement.
     against: Option<String>,
 }
 
 impl QueryParameters for PictureParameters {
-    const EXPECTED: &'static [(&'static str, &'static str)] = &[("against", "NODE.COMPONENT, such as `tip.x`")];
+    const EXPECTED: &'static [(&'static str, &'static str)] =
+        &[("against", "NODE.COMPONENT, such as `tip.x`, or a column")];
 }
 
 /// Load factor against a displacement over the increments stored so far, as SVG.

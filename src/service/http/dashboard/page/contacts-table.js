@@ -5,7 +5,7 @@ import { button, choice, element, fill, table } from "./dom.js";
 import { elementForces } from "./element-forces.js";
 import { elementWords } from "./quantities.js";
 import { vector } from "./geometry.js";
-import { headed, moment, unitsOf } from "./units.js";
+import { headed, measured, moment, unitsOf } from "./units.js";
 import { plainWords, short } from "./words.js";
 
 /** The part of the structure's size below which a gap is shown as 0. */
@@ -89,6 +89,7 @@ function moreOf({ force, ends, moment: turning, equivalent, model }) {
   const unit = units.force && units.length ? ` ${units.force}/${units.length}²` : "";
   return [
     force ? `force ${force.map(short).join(", ")}` : null,
+    ends ? `shear forces ${ends.flatMap((end) => end.shear_force ?? end.shear_forces).map((value) => measured(value, units.force)).join(", ")}` : null,
     ends ? `bending moments ${ends.flatMap((end) => end.bending_moment ?? end.bending_moments).map((value) => moment(value, units)).join(", ")}` : null,
     turning !== null && turning !== undefined ? `moment ${moment(turning, units)}` : null,
     equivalent !== null && equivalent !== undefined ? `von Mises stress ${short(equivalent)}${unit}` : null,

@@ -35,11 +35,15 @@ export class CurveView extends RowsView {
   }
 
   async drawFindings() {
-    const rows = this.rows.toSorted((a, b) => a.place - b.place);
+    const all = this.rows.toSorted((a, b) => a.place - b.place);
+    const { off_path_from: from, off_path_to: to } = this.record.report ?? {};
+    const isOff = ({ place }) => (place >= (from ?? Infinity)) || (place <= (to ?? -Infinity));
+    const rows = all.filter((row) => !isOff(row));
     const parameter = placeWords(this.record.plan.curve.parameter);
     const changes = rows.filter((row) => row.codimension_two);
     this.words.textContent = `The load factor at each point. ${changes.length
-      ? "Rings: the points change their kind, or the path comes to them by other contact changes." : ""}`;
+      ? "Rings: the points change their kind, or the path comes to them by other contact changes." : ""}${rows.length < all.length
+      ? ` Not drawn are ${all.length - rows.length} points that are on no path, as far as is known.` : ""}`;
     const traces = KINDS.map((kind, place) => ({
       type: "scatter", mode: "lines+markers", name: kindWords(kind), connectgaps: false,
       x: rows.map(({ value }) => value),
@@ -57,9 +61,9 @@ export class CurveView extends RowsView {
       });
     }
     await this.plot(traces, { xaxis: axis(parameter), yaxis: axis("load factor"), showlegend: traces.length > 1 });
-    fill(this.listing, table([parameter, "load factor", "kind", "event"], rows.slice(0, LISTED).map((row) => [
+    fill(this.listing, table([parameter, "load factor", "kind", "event"], all.slice(0, LISTED).map((row) => [
       Number(row.value.toPrecision(10)), Number(row.load_factor.toPrecision(10)), kindWords(row.kind),
-      row.event ?? (row.from_path ? "on a path traced for it" : ""),
-    ])), rows.length > LISTED ? element("p", { class: "quiet" }, `The first ${short(LISTED)} of ${rows.length}; the files have all of them.`) : null);
+      isOff(row) ? "on no path, as far as is known" : row.event ?? (row.from_path ? "on a path traced for it" : ""),
+    ])), all.length > LISTED ? element("p", { class: "quiet" }, `The first ${short(LISTED)} of ${all.length}; the files have all of them.`) : null);
   }
 }

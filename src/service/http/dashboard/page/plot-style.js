@@ -53,6 +53,17 @@ export function axis(title) {
   };
 }
 
+/** The part of the size of values up to which they differ by round-off alone. */
+const ROUND_OFF = 1e-9;
+
+/** The range of an axis whose values are all the same up to round-off, which would fill it otherwise. */
+export function constantRange(values) {
+  const numbers = values.filter(Number.isFinite);
+  const [low, high] = [Math.min(...numbers), Math.max(...numbers)];
+  const size = Math.max(Math.abs(low), Math.abs(high));
+  return numbers.length && high - low <= ROUND_OFF * size && size > 0 ? { range: [low - 0.5 * size, high + 0.5 * size] } : {};
+}
+
 export function layout(more) {
   return {
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",

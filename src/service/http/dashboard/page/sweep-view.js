@@ -2,7 +2,7 @@
 // runs, whose paths can be drawn over one another.
 
 import { button, choice, element, fill, table } from "./dom.js";
-import { axis, colourOf } from "./plot-style.js";
+import { axis, colourOf, constantRange } from "./plot-style.js";
 import { RowsView } from "./rows-view.js";
 import { addressOfJob, openJobs } from "./state.js";
 import { placeWords, valueWords } from "./sweep-values.js";
@@ -71,7 +71,7 @@ export class SweepView extends RowsView {
       line: { color: colourOf(place) }, marker: { size: 7 },
     }));
     await this.plot(traces, {
-      xaxis: { ...axis(names[0]), ...(isNumbers ? {} : { type: "category" }) }, yaxis: axis(verbatim(told)),
+      xaxis: { ...axis(names[0]), ...(isNumbers ? {} : { type: "category" }) }, yaxis: { ...axis(verbatim(told)), ...constantRange(traces.flatMap(({ y }) => y)) },
       showlegend: traces.length > 1,
     });
     // By their values, since runs that refine a sweep come last.
