@@ -212,7 +212,7 @@ async fn beams_are_drawn_as_they_are_bent_with_the_forces_in_them() {
     let id = served.ended(&frame).await;
     browser.visit(&format!("{}/?jobs={id}", served.url())).await;
     browser.until(&trace("node")).await;
-    for name in ["hinge", "rotational spring", "moment arrow", "undeformed", "support"] {
+    for name in ["hinge", "rotational spring", "moment arrow", "moment of a support arrow", "undeformed", "support"] {
         browser.until(&trace(name)).await;
     }
     // Between the ends of each member there are points, off the straight line.

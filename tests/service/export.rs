@@ -68,7 +68,7 @@ fn what_cannot_be_exported_is_told_and_leaves_earlier_results() {
     let output = arcslip(folder, &["export", "arch-type-truss", "other.ndjson", "--out", "path.csv"]);
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(
-        message.contains("increment 0: the model has no node `node`: is this the path of another model?"),
+        message.contains("increment 0: the model has no stage `press`: is this the path of another model?"),
         "{message}"
     );
     assert_eq!(std::fs::read(folder.join("path.csv")).expect("a file"), b"earlier");

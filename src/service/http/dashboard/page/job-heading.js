@@ -20,14 +20,14 @@ export class JobHeading {
     this.draw(null);
   }
 
-  /** `others`: the other paths that are drawn. */
-  show(path, others) {
+  /** `others`: the other paths that are drawn; `run`: of a sweep, in words. */
+  show(path, others, run) {
     const { job } = path;
     // The first point, of index 0, is no increment.
     const kept = path.index.filter((index) => index > 0).length;
     const all = path.last() ?? 0;
     const many = kept === all ? `${counted(all, "increment")}. ` : `${counted(all, "increment")}, ${kept} of them kept. `;
-    const name = nameOf(job);
+    const name = run ? `${nameOf(job)}: ${run}` : nameOf(job);
     this.told.titled(others ? `${name} and ${others} more` : name);
     fill(this.summary, element("div", { class: "bar" }, element("h2", {}, name),
       element("span", { class: `status ${job.status}`, id: "status", "data-status": job.status }, statusOf(job))),

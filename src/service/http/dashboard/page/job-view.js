@@ -13,7 +13,7 @@ import { PathPlot } from "./path-plot.js";
 import { plotlyLoaded } from "./plotly-loaded.js";
 import { change, state } from "./state.js";
 import { StructurePlot } from "./structure-plot.js";
-import { sweepOf } from "./sweep-colours.js";
+import { runNameOf, sweepOf } from "./sweep-colours.js";
 import { isGoingOn } from "./words.js";
 
 /** Milliseconds between pictures of the structure of a path that grows: the path itself is drawn first. */
@@ -30,6 +30,8 @@ export class JobView {
     this.told = told;
     /** Id to path, for all loaded paths, drawn or not. */
     this.held = new Map();
+    /** Id to the values of a run of a sweep, in words. */
+    this.runNames = new Map();
     this.top = new JobHeading(byId("heading"), told);
     const chosen = (index) => change({ at: index });
     this.pathPlot = new PathPlot(byId("path"), {
@@ -217,6 +219,7 @@ export class JobView {
     const shown = this.paths();
     const axes = axesOf(shown, state());
     this.heading();
+    this.nameRun(first);
     const read = shown.map((path) => path.need([axes.abscissa, ...axes.ordinates]));
     try {
       this.pathPlot.sweep = (await Promise.all([sweepOf(shown), plotlyLoaded(), ...read]))[0];
@@ -254,7 +257,14 @@ export class JobView {
   }
 
   heading() {
-    if (this.first && this.isWanted) this.top.show(this.first, state().jobs.length - 1);
+    if (this.first && this.isWanted) this.top.show(this.first, state().jobs.length - 1, this.runNames.get(this.first.id));
+  }
+
+  /** Tells in the heading which run of its sweep a path is; drawing does not wait for it. */
+  async nameRun({ id, job }) {
+    if (!job.sweep || this.runNames.has(id)) return;
+    this.runNames.set(id, await runNameOf(job));
+    if (this.first?.id === id) this.heading();
   }
 }
 

@@ -55,16 +55,20 @@ export function drawLoads(loads, extent, traces, { now, most, units, detail }) {
     });
   }
 
-  /** An arc about a node, with its arrow in the direction of the value. */
   function turn(trace, place, value, color, words) {
-    const radius = MOMENT * extent.size;
-    const points = Array.from({ length: POINTS + 1 }, (_, step) => {
-      const angle = -Math.PI / 4 + Math.sign(value) * (step / POINTS) * THROUGH;
-      return [place[0] + radius * Math.cos(angle), place[1] + radius * Math.sin(angle)];
-    });
-    traces.lines(trace, [points.slice(0, -1)], { color, width: 2 });
-    traces.arrow(`${trace} arrow`, points.at(-2), points.at(-1), color, { words });
+    drawTurn(traces, extent, { trace, place, value, color, words });
   }
+}
+
+/** An arc about a node, with its arrow in the direction of the value. */
+export function drawTurn(traces, extent, { trace, place, value, color, words }) {
+  const radius = MOMENT * extent.size;
+  const points = Array.from({ length: POINTS + 1 }, (_, step) => {
+    const angle = -Math.PI / 4 + Math.sign(value) * (step / POINTS) * THROUGH;
+    return [place[0] + radius * Math.cos(angle), place[1] + radius * Math.sin(angle)];
+  });
+  traces.lines(trace, [points.slice(0, -1)], { color, width: 2 });
+  traces.arrow(`${trace} arrow`, points.at(-2), points.at(-1), color, { words });
 }
 
 /** The largest of the forces. */

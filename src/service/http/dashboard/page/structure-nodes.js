@@ -2,7 +2,8 @@
 
 import { vector } from "./geometry.js";
 import { fromSheet } from "./plot-style.js";
-import { components, measured } from "./units.js";
+import { drawTurn } from "./structure-loads.js";
+import { components, measured, moment } from "./units.js";
 
 const { plus } = vector;
 const AXES = "xyz";
@@ -65,6 +66,21 @@ export class NodeDrawing {
       const place = now.get(name);
       traces.arrow("reaction of a support", place, plus(place, force, (ARROW * extent.size) / most), fromSheet("--support"),
         { words: this.words(name), isAtHead: true });
+    }
+    if (model.dimension === 2) this.moments();
+  }
+
+  /** The moments of supports on the structure, in the plane, that are not small beside the largest. */
+  moments() {
+    const { increment, detail, traces, now, extent, units } = this;
+    const all = Object.entries(increment.supports ?? {}).map(([name, force]) => [name, force[2] ?? 0]);
+    const least = SMALLEST * all.reduce((most, [, value]) => Math.max(most, Math.abs(value)), 0);
+    const shown = all.filter(([name, value]) => now.has(name) && Math.abs(value) > least).map(([name, value]) => [name, [value]]);
+    for (const [name, [value]] of detail.arrows(shown, "moments of supports")) {
+      drawTurn(traces, extent, {
+        trace: "moment of a support", place: now.get(name), value, color: fromSheet("--support"),
+        words: [...this.words(name), `moment ${moment(value, units)}`],
+      });
     }
   }
 

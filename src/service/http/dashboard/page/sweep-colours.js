@@ -17,7 +17,16 @@ const read = new Map();
 export async function sweepOf(paths) {
   const ids = new Set(paths.map(({ job }) => job.sweep?.sweep ?? null));
   const [id] = ids;
-  if (paths.length < 2 || ids.size > 1 || id === null) return null;
+  return paths.length < 2 || ids.size > 1 || id === null ? null : sweepWith(id);
+}
+
+/** The values of a run, in words; null of another job, and where they cannot be read. */
+export async function runNameOf({ sweep }) {
+  const found = sweep ? await sweepWith(sweep.sweep) : null;
+  return found && !found.problem ? runWords(found, sweep.run) : null;
+}
+
+async function sweepWith(id) {
   if (!read.has(id)) read.set(id, get(`/v1/sweeps/${id}`));
   try {
     return await read.get(id);
