@@ -6,14 +6,13 @@ mod backup;
 mod check;
 mod convert;
 mod critical_curve;
-mod export;
 mod health;
 mod openapi;
 mod options;
 pub(crate) mod output;
+mod paths;
 mod scenes;
 mod serve;
-mod solve;
 mod study;
 mod sweep;
 mod token;
@@ -22,6 +21,7 @@ mod work;
 
 use crate::command::options::input::MistakeFormat;
 use crate::command::output::outcome::{BAD_INPUT, FAILED, Failure, Outcome};
+use crate::command::paths::{export, solve};
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::process::ExitCode;
 

@@ -89,12 +89,7 @@ pub(super) fn advance(
         _ if motion.travelled > WAY_TO_LOWER && !motion.is_unresisted => -motion.raised,
         _ => 0.0,
     };
-    let by_load = load_change.abs() * size_of_load(trace) / (stiffness + 1.0);
-    let by_push = if motion.steps == 0 && !motion.push.is_empty() { PUSH } else { 0.0 };
-    // Mass that has been stopped is accelerated by what is out of balance.
-    let is_stopped = motion.steps > 0 && speed <= SPEED_STOPPED * motion.largest_speed;
-    let by_force = if is_stopped { LENGTH_BY_FORCE * out_of_balance(trace) } else { 0.0 };
-    let expected = (speed * motion.time_step).max(by_load).max(by_push).max(by_force).max(LEAST_LENGTH);
+    let expected = expected_length(trace, &motion, speed, (stiffness, load_change));
     let springs = Some(Springs { stiffness, places: &places });
     let shorter = |trace: &mut PathTrace<'_>, factor: f64| {
         let time_step = motion.time_step * factor;
@@ -139,6 +134,17 @@ pub(super) fn advance(
     };
     accept(trace, moved, after);
     Ok(Advance::Moving)
+}
+
+/// The length of the motion that is expected of a time step.
+fn expected_length(trace: &PathTrace<'_>, motion: &JumpProgress, speed: f64, step: (f64, f64)) -> f64 {
+    let (stiffness, load_change) = step;
+    let by_load = load_change.abs() * size_of_load(trace) / (stiffness + 1.0);
+    let by_push = if motion.steps == 0 && !motion.push.is_empty() { PUSH } else { 0.0 };
+    // Mass that has been stopped is accelerated by what is out of balance.
+    let is_stopped = motion.steps > 0 && speed <= SPEED_STOPPED * motion.largest_speed;
+    let by_force = if is_stopped { LENGTH_BY_FORCE * out_of_balance(trace) } else { 0.0 };
+    (speed * motion.time_step).max(by_load).max(by_push).max(by_force).max(LEAST_LENGTH)
 }
 
 /// Seeks the state at rest from a motion that has slowed down: first at the raised load, then at the load itself; `None`

@@ -33,7 +33,7 @@ pub struct Arguments {
     #[arg(long, value_name = "NODE.COMPONENT|COLUMN", requires = "plot")]
     against: Option<String>,
     #[command(flatten)]
-    pub(super) bounds: bounds::Arguments,
+    pub(in crate::command) bounds: bounds::Arguments,
 }
 
 pub fn run(arguments: &Arguments) -> Outcome {

@@ -1,0 +1,4 @@
+//! Paths: traced, and written in other formats.
+
+pub mod export;
+pub mod solve;
