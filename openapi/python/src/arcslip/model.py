@@ -86,7 +86,8 @@ class Model:
         held = [components] if components in known else list(components) or list("xyz"[: self.dimension])
         unknown = [component for component in held if component not in known]
         if unknown:
-            given = components if isinstance(components, str) else unknown[0]
+            # A word such as "fixed" is no list of components.
+            given = components if isinstance(components, str) and len(components) > 3 else unknown[0]
             raise ValueError(f"{given!r} is no component; known are {', '.join(known)}, and all displacements without any")
         several = [nodes] if isinstance(nodes, str) or not isinstance(nodes, Iterable) else nodes
         for node in several:
