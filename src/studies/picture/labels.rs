@@ -8,6 +8,8 @@ const CELL: i32 = 30;
 const CURVE: u32 = 14;
 const MARKER: u32 = 20;
 const LETTER: u32 = 60;
+/// Markers that a letter is kept from, the first ones: a path has letters at its first events alone.
+const MOST_MARKERS: usize = 300;
 /// The cost of standing nearer to another marker than to the letter's own.
 const STRAY: u32 = 50;
 /// The cost of leaving the map.
@@ -52,7 +54,9 @@ impl Map {
 
     pub fn add_marker(&mut self, middle: Place, size: i32) {
         self.add_box(middle, (size, size), MARKER);
-        self.markers.push(middle);
+        if self.markers.len() < MOST_MARKERS {
+            self.markers.push(middle);
+        }
     }
 
     /// Finds the best place for a letter, given half its size, and occupies it.
