@@ -115,7 +115,8 @@ impl TimeStepScene {
         let present = &trace.scene.stages[trace.at.stage];
         self.scene.stages.truncate(self.stages);
         let of = |pattern: LoadPattern, ends: Vec<End>| {
-            let (pattern, control) = (Arc::new(pattern), StageControl::Path);
+            // Of directions among which the rule does not decide, the forces rise along one.
+            let (pattern, control) = (Arc::new(pattern), StageControl::Load);
             StageLoad { of_stage: Arc::clone(&pattern), sense: 1.0, pattern, ends, control, ..present.clone() }
         };
         let mut held_back = present.pattern.zeroed();

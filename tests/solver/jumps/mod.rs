@@ -4,6 +4,7 @@ mod critical_states;
 mod cycles;
 mod random_trusses;
 mod remembered;
+mod rough_stops;
 mod snaps;
 mod stability;
 mod stage_ends;

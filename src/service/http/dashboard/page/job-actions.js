@@ -6,6 +6,8 @@ import { download, downloadIncrements } from "./downloads.js";
 import { change, openModelOf, state } from "./state.js";
 import { isGoingOn, nameOf } from "./words.js";
 
+const thumbnails = import("./thumbnails.js");
+
 /** Calls `done()` after an action that changes the lists, `failed(problem)` after a refused one. */
 export function jobActions(job, done, failed) {
   const { id } = job;
@@ -24,6 +26,7 @@ export function jobActions(job, done, failed) {
     button("Model (json)", then(() => download(`/v1/jobs/${id}/request`, `request-${id}.json`))),
     button("Duplicate and edit", () => openModelOf(id)),
     askingButton("Delete", `Delete “${nameOf(job)}” and all its increments?`, then(async () => {
+      await thumbnails.then(({ forget }) => forget(id), () => {});
       await call(`/v1/jobs/${id}`, { method: "DELETE" });
       leaveFor({ jobs: state().jobs.filter((other) => other !== id), at: null });
     }), { class: "danger", id: "delete" }));

@@ -16,7 +16,10 @@ const [FIRST, PAUSE] = [1200, 60];
 /** Job id to `{key, points, words}`; the key changes with what a picture is of. */
 const held = new Map();
 const wanted = new Map();
+/** Jobs that have been deleted: a list that was on its way may still show their rows. */
+const gone = new Set();
 let isBusy = false;
+let reading = { id: null, given: new AbortController() };
 
 const inSight = new IntersectionObserver((entries) => {
   for (const { isIntersecting, target } of entries) {
@@ -47,6 +50,13 @@ export function thumbnail({ id, status, progress, plan }) {
   return picture;
 }
 
+/** No picture of a job is read from now on; for a job that is about to be deleted. */
+export function forget(id) {
+  gone.add(id);
+  wanted.delete(id);
+  if (reading.id === id) reading.given.abort();
+}
+
 async function drawWanted() {
   if (isBusy) return;
   isBusy = true;
@@ -58,6 +68,7 @@ async function drawWanted() {
     const [[id, picture]] = wanted;
     wanted.delete(id);
     if (!picture.isConnected && !document.querySelector(`.thumbnail[data-job="${id}"]`)) continue;
+    if (gone.has(id)) continue;
     held.set(id, { key: picture.dataset.key, ...await read(id) });
     for (const one of document.querySelectorAll(`.thumbnail[data-job="${id}"]`)) draw(one, held.get(id));
   }
@@ -65,8 +76,10 @@ async function drawWanted() {
 }
 
 async function read(id) {
+  reading = { id, given: new AbortController() };
   try {
-    const page = await get(`/v1/jobs/${id}/columns?of=arc_length,load_factor&limit=${MOST}`);
+    const place = `/v1/jobs/${id}/columns?of=arc_length,load_factor&limit=${MOST}`;
+    const page = await get(place, reading.given.signal);
     const { arc_length: x, load_factor: y } = page.columns;
     const isPart = page.index.length === MOST;
     return {
