@@ -66,5 +66,6 @@ mod stage_ends;
 mod straight_paths;
 mod studies;
 mod unstressed;
+mod vanishing_changes;
 mod verify;
 mod wedge;

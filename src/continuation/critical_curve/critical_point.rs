@@ -6,6 +6,7 @@ use crate::continuation::critical_curve::history::contact_history::{
 use crate::continuation::critical_curve::history::solved_history::{
     ConditionSide, PathCondition, SolvedHistory, scene_loading,
 };
+use crate::continuation::critical_curve::meeting_changes::MeetingChanges;
 use crate::continuation::path_state::resumable_state::constant_load;
 use crate::continuation::path_state::row_conversion::{self, RowSource};
 use crate::continuation::path_state::totals::Totals;
@@ -149,7 +150,7 @@ pub(super) fn describe(scene: &Scene, history: &ContactHistory, condition: &Path
     let kind = kind_name(history.kind);
     let point = &history.points[condition.point];
     let critical = (condition.point + 1 == history.points.len()).then_some(history.kind);
-    let what = what_happens(scene, condition, critical);
+    let what = what_happens(scene, condition.function, (critical, condition.about));
     if condition.point + 1 == history.points.len() {
         return format!("{what} at the {kind}");
     }
@@ -160,8 +161,27 @@ pub(super) fn describe(scene: &Scene, history: &ContactHistory, condition: &Path
     format!("{what} at change {count} of the {all} by which the path comes to the {kind}")
 }
 
-/// `critical`: the kind of the critical point, where the condition is of it.
-fn what_happens(scene: &Scene, condition: &PathCondition, critical: Option<PointKind>) -> String {
+/// What is told where two changes of contact meet.
+pub(super) fn describe_meeting(scene: &Scene, meeting: &MeetingChanges) -> String {
+    let [first, second] = meeting.events.map(|function| what_happens(scene, function, (None, ConditionSide::Arriving)));
+    let value = in_words(meeting.value);
+    format!("{first} and {second} at the same place: these two changes of contact meet at {value} and vanish")
+}
+
+/// What is told where the event function of a change of contact touches zero without passing it.
+pub(super) fn describe_grazing(scene: &Scene, history: &ContactHistory) -> String {
+    let closing = history.points.last().map(|point| point.closing);
+    let Some(PointClosing::Event(function)) = closing else { return "the curve turns back".to_owned() };
+    let what = what_happens(scene, function, (None, ConditionSide::Arriving));
+    format!("{what} by touching the bound only (grazing): past it, this contact does not change here")
+}
+
+/// What happens where a function is zero. `critical`: the kind of the critical point, where it is one of its conditions.
+fn what_happens(
+    scene: &Scene,
+    function: EventFunction,
+    (critical, about): (Option<PointKind>, ConditionSide),
+) -> String {
     let pair = |contact: usize| {
         let (node, obstacle) = &scene.contact_names[contact];
         (node.to_string(), obstacle.to_string())
@@ -170,7 +190,7 @@ fn what_happens(scene: &Scene, condition: &PathCondition, critical: Option<Point
         let first = scene.corners.get(corner).and_then(|corner| corner.contacts.first());
         first.map_or_else(String::new, |contact| pair(*contact).0)
     };
-    match condition.function {
+    match function {
         EventFunction::Gap(contact) => {
             let (node, obstacle) = pair(contact);
             format!("{node} touches {obstacle}")
@@ -195,7 +215,7 @@ fn what_happens(scene: &Scene, condition: &PathCondition, critical: Option<Point
         | EventFunction::Slide { corner }
         | EventFunction::Hold { corner }
         | EventFunction::Return { corner } => format!("{} begins to slip in its corner", of_corner(corner)),
-        EventFunction::LoadRate { .. } => of_load_rate(critical, condition.about).to_owned(),
+        EventFunction::LoadRate { .. } => of_load_rate(critical, about).to_owned(),
         EventFunction::End(_) => "the stage ends".to_owned(),
     }
 }

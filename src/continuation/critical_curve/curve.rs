@@ -12,6 +12,7 @@ use crate::continuation::critical_curve::history::taken_directions::TakenDirecti
 use crate::continuation::critical_curve::history::tolerances::{FOUND_ZERO, PASSED, UNFOLDED};
 use crate::continuation::critical_curve::history::traced_history::{self, CurveRefusal, CurveStart};
 use crate::continuation::critical_curve::last_points::LastPoints;
+use crate::continuation::critical_curve::meeting_changes;
 use crate::continuation::critical_curve::tolerances::{
     FIRST_DEVIATION, LARGEST_DEVIATION, MODEL_STEP, PAST_CHANGE, PREFERENCE_WIDTH, SAME_POINT, SHORTEST_CHORD,
     SHORTEST_STEP, STEP_GROWTH, STEP_ROUND_OFF, TURNING_STEP, UNLOCATED_STEPS,
@@ -21,6 +22,7 @@ use crate::continuation::critical_curve::turning_point::{self, MeetingBifurcatio
 use crate::continuation::scene::Scene;
 use crate::model::input::limits::MAX_CURVE_POINTS;
 use crate::resources::cancel::CancelFlag;
+use crate::result::increment::PointKind;
 use crate::step::corrector::cost_counters::Work;
 use std::ops::ControlFlow;
 
@@ -208,7 +210,7 @@ impl<'a> CriticalCurve<'a> {
                 && let Some(turn) = turning_point::turn(self.family, &walk.place, walk.sense, &mut self.work)
                 && (self.range.from..=self.range.to).contains(&turn.at.1.parameter)
             {
-                return self.turn_back(walk, turn, accept);
+                return self.at_turning_point(walk, turn, paths, accept);
             }
             if let Some(cusp) = self.cusp_ahead(walk) {
                 return self.pass_cusp(walk, cusp, paths, accept);
@@ -220,7 +222,11 @@ impl<'a> CriticalCurve<'a> {
                 return walk.shorten();
             }
             let from = walk.place.here.clone();
-            let lost = || "steps became too short, and no solution of its equations was found near by".to_owned();
+            let meeting = meeting_changes::ahead(&walk.place, (walk.sense, UNLOCATED_STEPS * self.shortest()));
+            let lost = || match &meeting {
+                Some(meeting) => critical_point::describe_meeting(&scene, meeting),
+                None => "steps became too short, and no solution of its equations was found near by".to_owned(),
+            };
             let slack = self.slack(&walk.place);
             return self.go_on_past(walk, (&from, slack), paths, accept, lost);
         };
@@ -316,6 +322,25 @@ impl<'a> CriticalCurve<'a> {
         flow(self.emit(&scene, &at_change, note, accept))?;
         (walk.place.before, walk.taken) = (Some(std::mem::replace(&mut walk.place.here, at)), Some(taken));
         ControlFlow::Continue(())
+    }
+
+    /// Goes round a turning point of limit points; a change of contact whose event function touches zero ends there.
+    fn at_turning_point(
+        &mut self,
+        walk: &mut Walk,
+        turn: TurningPoint,
+        paths: &mut TracedPaths<'_>,
+        accept: AcceptPoint<'_>,
+    ) -> ControlFlow<Stopped> {
+        if walk.place.history.kind == PointKind::SmoothLimit {
+            return self.turn_back(walk, turn, accept);
+        }
+        let (scene, at) = turn.at;
+        let what = critical_point::describe_grazing(&scene, &walk.place.history);
+        let grazing = CurvePosition { here: at.clone(), history: walk.place.history.clone(), before: None };
+        let note = PointNote { event: Some(what.clone()), codimension_two: true, from_path: false };
+        flow(self.emit(&scene, &grazing, note, accept))?;
+        self.go_on_past(walk, (&at, 0.0), paths, accept, || what)
     }
 
     /// Goes round a point where the curve turns back in the parameter.

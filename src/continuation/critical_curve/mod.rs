@@ -29,6 +29,7 @@
 //! | `curve`, `curve_position` | the curve, from point to point |
 //! | `traced_paths`, `last_points` | paths to go on past a change, and to compare the ends of the curve with |
 //! | `turning_point` | where it turns back in the parameter |
+//! | `meeting_changes` | where two changes of contact meet and vanish |
 //! | `cusp` | where it passes through a bifurcation point |
 //! | `critical_point`, `curve_outcome` | a point of the curve in the user's units, its event in words; how a curve ends |
 //! | `tolerances` | |
@@ -40,6 +41,7 @@ pub(crate) mod curve_position;
 mod cusp;
 pub(crate) mod history;
 mod last_points;
+mod meeting_changes;
 mod tolerances;
 mod traced_paths;
 mod turning_point;

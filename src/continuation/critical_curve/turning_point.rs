@@ -1,5 +1,6 @@
 //! Where a curve of critical points turns back in the parameter: two limit points of the path, a load maximum and a load
-//! minimum, meet there and vanish (a cusp of the equilibrium surface).
+//! minimum, meet there and vanish (a cusp of the equilibrium surface). Where the critical point is a change of contact, its
+//! event function touches zero there without passing it (grazing), and past it the contact does not change.
 //!
 //! Near such a point the state does not follow from the parameter, but the parameter from the state: the critical point is
 //! sought in a plane across the last chord `c` of the curve, and the parameter `p` is the unknown (pseudo-arclength
@@ -10,7 +11,7 @@
 //! ```
 
 use crate::continuation::critical_curve::curve_position::{CurvePosition, SceneFamily, extrapolated};
-use crate::continuation::critical_curve::history::contact_history::PointGuess;
+use crate::continuation::critical_curve::history::contact_history::{PointClosing, PointGuess};
 use crate::continuation::critical_curve::history::solved_history::SolvedHistory;
 use crate::continuation::critical_curve::history::tolerances::UNFOLDED;
 use crate::continuation::critical_curve::tolerances::{PARAMETER_ROUND_OFF, SMALLEST_RETURN, TURNING_WIDTH};
@@ -47,7 +48,8 @@ pub(super) fn turn(
     work: &mut Work,
 ) -> Option<TurningPoint> {
     let before = place.before.as_ref()?;
-    if place.history.kind != PointKind::SmoothLimit || place.here.parameter == before.parameter {
+    let closing = place.history.points.last()?.closing;
+    if !matches!(closing, PointClosing::Event(_)) || place.here.parameter == before.parameter {
         return None;
     }
     let (first, last) = (before.parameter, place.here.parameter);
