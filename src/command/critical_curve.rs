@@ -24,7 +24,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FROM,TO", value_parser = range, allow_hyphen_values = true)]
     range: Option<[f64; 2]>,
     /// Longest step between two values. Default: the range over 40.
-    #[arg(long, value_name = "STEP")]
+    #[arg(long, value_name = "STEP", value_parser = step)]
     step: Option<f64>,
     /// Follow the limit point of this number on the path, from 1.
     #[arg(long, value_name = "N", conflicts_with = "increment")]
@@ -45,6 +45,11 @@ fn range(argument: &str) -> Result<[f64; 2], String> {
         [from, to] => Err(format!("found {from} and {to}; two finite numbers are expected")),
         _ => Err("FROM,TO is expected".to_owned()),
     }
+}
+
+fn step(argument: &str) -> Result<f64, String> {
+    let step: f64 = argument.parse().map_err(|error| format!("{error}"))?;
+    if step.is_finite() && step > 0.0 { Ok(step) } else { Err("a positive finite number is expected".to_owned()) }
 }
 
 pub fn run(arguments: &Arguments) -> Outcome {

@@ -174,6 +174,24 @@ fn points_past_one_that_a_path_does_not_have_are_marked() {
     assert_eq!(table.matches(",true,").count() + 1, found.rows.len() + 1, "{table}");
 }
 
+/// The curve is lost by short steps, and all points between the last long step and there are on no path.
+#[test]
+fn points_up_to_where_a_curve_is_lost_are_marked() {
+    let request = crate::common::paths::request(include_str!("models/three-bars-on-a-rough-foot.json"));
+    let settings = json!({
+        "parameter": "/model/nodes/n0/1", "range": [0.233, 0.875], "step": 0.08, "increment": 66,
+    });
+    let curve = curve_of(&request, &settings).expect("a curve");
+    let found = followed(&curve).expect("a curve");
+    let summary = ended(&found);
+    let [marked, others]: [Vec<&CurveRow>; 2] =
+        [true, false].map(|is_off| found.rows.iter().filter(|row| summary.is_off_path(row) == is_off).collect());
+    assert!(marked.len() > 3 && marked.iter().all(|row| row.value < 0.44), "{marked:?}");
+    for row in others.iter().filter(|row| !row.codimension_two) {
+        close(off_path(&curve, row).unwrap_or(f64::INFINITY), 0.0, 1e-7, "a limit point of a path");
+    }
+}
+
 #[test]
 fn a_cancelled_curve_claims_no_end() {
     let settings = json!({"parameter": "/model/contacts/*/friction", "range": [0, 2], "step": 0.1});

@@ -6,13 +6,16 @@
 use crate::continuation::critical_curve::curve_outcome::DirectionEnd;
 use crate::continuation::critical_curve::curve_position::CurvePosition;
 use crate::continuation::critical_curve::history::solved_history::StateScales;
-use crate::continuation::critical_curve::tolerances::CLEAR_OF_CHANGE;
+use crate::continuation::critical_curve::tolerances::{CLEAR_OF_CHANGE, CLEAR_OF_LOSS};
 use crate::continuation::critical_curve::traced_paths::TracedPaths;
 use crate::mechanics::problem::state::State;
 use std::collections::VecDeque;
 
 /// Points that are kept, the last ones.
 const MOST_KEPT: usize = 256;
+
+/// Points close to a change that are compared with paths, between one that is on a path and one that is not.
+const MOST_BETWEEN: usize = 16;
 
 /// A point of the curve that may be compared with a path.
 #[derive(Clone)]
@@ -33,14 +36,17 @@ pub(super) struct LastPoints {
     points: VecDeque<PassedCritical>,
     /// The last value at which the curve changed.
     change: Option<f64>,
-    /// Points closer to a change than this are not compared.
+    /// Points closer to a change than this are not compared ...
     close: f64,
+    /// ... nor those closer than this to the value past which the curve is lost.
+    close_to_loss: f64,
 }
 
 impl LastPoints {
     /// None so far, of a curve with this longest step.
     pub fn none(longest_step: f64) -> Self {
-        Self { points: VecDeque::new(), change: None, close: CLEAR_OF_CHANGE * longest_step }
+        let [close, close_to_loss] = [CLEAR_OF_CHANGE, CLEAR_OF_LOSS].map(|part| part * longest_step);
+        Self { points: VecDeque::new(), change: None, close, close_to_loss }
     }
 
     /// Keeps a point; `changes`: the curve changes there.
@@ -71,7 +77,8 @@ impl LastPoints {
             DirectionEnd::Lost { value, .. } | DirectionEnd::Model { value, .. } => Some(*value),
             _ => None,
         };
-        let is_apart = |one: &&PassedCritical| lost.is_none_or(|lost| (one.parameter - lost).abs() >= self.close);
+        let is_apart =
+            |one: &&PassedCritical| lost.is_none_or(|lost| (one.parameter - lost).abs() >= self.close_to_loss);
         let clear: Vec<&PassedCritical> = self.points.iter().filter(|one| one.is_clear).filter(is_apart).collect();
         let Some(last) = clear.last() else { return end };
         if paths.has(last) {
@@ -83,10 +90,22 @@ impl LastPoints {
             let middle = on.midpoint(off);
             if paths.has(clear[middle]) { on = middle + 1 } else { off = middle }
         }
-        let on = off.checked_sub(1).map(|on| clear[on]);
         let first = clear[off];
+        let on = off.checked_sub(1).map(|on| self.last_on_path(clear[on], first, paths));
         let place = on.map_or(first.place, |on| on.place + first.place.signum());
         DirectionEnd::OffPath { value: first.parameter, last: on.map(|on| on.parameter), place, end: Box::new(end) }
+    }
+
+    /// The last point before one that is on no path that is on one; that one may be close to a change.
+    fn last_on_path<'a>(
+        &'a self,
+        on: &'a PassedCritical,
+        off: &PassedCritical,
+        paths: &mut TracedPaths<'_>,
+    ) -> &'a PassedCritical {
+        let after = self.points.iter().skip_while(|one| one.place != on.place).skip(1);
+        let between = after.take_while(|one| one.place != off.place).take(MOST_BETWEEN);
+        between.take_while(|one| paths.has(one)).last().unwrap_or(on)
     }
 
     /// The value of the last point.

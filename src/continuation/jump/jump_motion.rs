@@ -45,6 +45,8 @@ pub(super) enum NoRest {
     MovesAway,
     MaxSteps,
     Unstable,
+    /// No time step is taken, however short.
+    NoWay,
 }
 
 impl NoRest {
@@ -53,6 +55,7 @@ impl NoRest {
             Self::MovesAway => "it moves away without end",
             Self::MaxSteps => "it still moves after jump_motion.max_steps time steps",
             Self::Unstable => "it stops in a state that is not stable",
+            Self::NoWay => "its motion cannot begin; obstacles or supports that the load moves may leave it no way",
         }
     }
 }
@@ -96,7 +99,11 @@ pub(super) fn advance(
         if let Some(motion) = &mut trace.at.motion {
             motion.time_step = time_step;
         }
-        if time_step < SHORTEST_TIME_STEP { Err(StopReason::StepUnderflow.into()) } else { Ok(Advance::Again) }
+        match motion.steps {
+            _ if time_step >= SHORTEST_TIME_STEP => Ok(Advance::Again),
+            0 => Err(NoRest::NoWay.into()),
+            _ => Err(StopReason::StepUnderflow.into()),
+        }
     };
     let moved = match scene.take(trace, &TimeStep { springs, raised: motion.raised, load_change, expected }) {
         Ok(moved) if moved.is_stable != Some(false) => moved,
