@@ -15,7 +15,7 @@ use crate::continuation::critical_curve::last_points::LastPoints;
 use crate::continuation::critical_curve::meeting_changes;
 use crate::continuation::critical_curve::tolerances::{
     FIRST_DEVIATION, LARGEST_DEVIATION, MODEL_STEP, PAST_CHANGE, PREFERENCE_WIDTH, SAME_POINT, SHORTEST_CHORD,
-    SHORTEST_STEP, STEP_GROWTH, STEP_ROUND_OFF, TURNING_STEP, UNLOCATED_STEPS,
+    SHORTEST_STEP, STEP_GROWTH, STEP_ROUND_OFF, TURNING_REACH, TURNING_STEP, UNLOCATED_STEPS,
 };
 use crate::continuation::critical_curve::traced_paths::TracedPaths;
 use crate::continuation::critical_curve::turning_point::{self, MeetingBifurcations, TurningPoint};
@@ -209,6 +209,7 @@ impl<'a> CriticalCurve<'a> {
             if walk.step <= TURNING_STEP * self.range.step
                 && let Some(turn) = turning_point::turn(self.family, &walk.place, walk.sense, &mut self.work)
                 && (self.range.from..=self.range.to).contains(&turn.at.1.parameter)
+                && (turn.at.1.parameter - here).abs() <= TURNING_REACH * walk.step
             {
                 return self.at_turning_point(walk, turn, paths, accept);
             }

@@ -20,6 +20,10 @@ pub(crate) const PARAMETER_ROUND_OFF: f64 = 1e-11;
 /// Part of the longest step below which the curve may be close to a point where it turns back, and is sought across.
 pub(crate) const TURNING_STEP: f64 = 1.0 / 16.0;
 
+/// A turning point is that of the step that failed if it lies within so many of these steps: the parabola through the last
+/// points may have a top far away, with changes of the curve in between.
+pub(crate) const TURNING_REACH: f64 = 4.0;
+
 /// A point in a plane past a turning point has gone back by at least this part of the last step: far enough for a parabola.
 pub(crate) const SMALLEST_RETURN: f64 = 0.05;
 

@@ -63,7 +63,7 @@ pub(super) fn turn(
     })?;
     // In units of the last chord.
     let mut known = [(-1.0, first), (0.0, last), (far, past.1.parameter)];
-    let mut at = None;
+    let mut found_at = None;
     for _ in 0..MOST_PARABOLAS {
         let top = top_of_parabola(&known).filter(|top| *top > 0.0)?;
         let found = in_plane(family, place, top, work)?;
@@ -75,14 +75,19 @@ pub(super) fn turn(
         let farthest =
             known.iter().enumerate().max_by(|(_, a), (_, b)| (a.0 - top).abs().total_cmp(&(b.0 - top).abs()))?.0;
         known[if nearest == farthest { 0 } else { farthest }] = (top, found.1.parameter);
-        at = Some(found);
+        found_at = Some((top, found));
         if width <= TURNING_WIDTH {
             break;
         }
     }
-    let at = at?;
-    let is_ahead = sense * (at.1.parameter - last) >= 0.0;
-    is_ahead.then_some(TurningPoint { at, past })
+    let (top, at) = found_at?;
+    if sense * (at.1.parameter - last) < 0.0 {
+        return None;
+    }
+    // As far past it as the last point is before: the first plane in which the point was back may lie much farther.
+    let nearer =
+        in_plane(family, place, 2.0 * top, work).filter(|one| sense * (one.1.parameter - at.1.parameter) < 0.0);
+    Some(TurningPoint { at, past: nearer.unwrap_or(past) })
 }
 
 /// Where a curve of bifurcation points turns back: two of them meet and vanish.
