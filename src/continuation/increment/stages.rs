@@ -4,12 +4,13 @@ use crate::branching::directions::feasible_direction::{self, DirectionChoice, Pr
 use crate::branching::directions::trial_step::later_sign;
 use crate::branching::selection::selection_rule::{self, Decision};
 use crate::continuation::increment::limit_point_start;
-use crate::continuation::path_state::event_descriptions::describe_start;
+use crate::continuation::path_state::event_descriptions::{describe_change, describe_slipping, describe_start};
 use crate::continuation::path_state::motion::{JumpCause, JumpProgress};
 use crate::continuation::path_state::path_context::{Emitted, PathTrace};
 use crate::continuation::path_state::resumable_state::{Phase, StageCounts};
 use crate::continuation::path_state::visited_states::VisitedStates;
 use crate::continuation::scene::StageLoad;
+use crate::mechanics::contact::all_continue;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::state::Rate;
@@ -32,7 +33,18 @@ pub(crate) fn begin_stage(trace: &mut PathTrace<'_>) -> Increment {
     let mut point = Point::plain(PointKind::Start, Some(event));
     let (mut options, mut taken) = (Vec::new(), None);
     if !trace.at.stage_over {
+        let before = trace.at.here.modes.clone();
         (options, taken) = depart(trace, &mut point);
+        let changes = match trace.at.stage {
+            _ if taken.is_none() => None,
+            // No contact has a mode before the first stage.
+            0 => describe_slipping(trace.names(), trace.loading(), &trace.at.here.modes),
+            _ if all_continue(&trace.at.here.modes, &before) => None,
+            _ => Some(describe_change(trace.names(), &before, Some(&trace.at.here.modes), &[])),
+        };
+        if let (Some(event), Some(changes)) = (&mut point.event, changes) {
+            *event = format!("{event}; {changes}");
+        }
     }
     let here = &trace.at.here;
     let (state, modes) = (here.state.clone(), here.modes.clone());

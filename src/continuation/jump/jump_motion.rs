@@ -94,20 +94,9 @@ pub(super) fn advance(
     };
     let expected = expected_length(trace, &motion, speed, (stiffness, load_change));
     let springs = Some(Springs { stiffness, places: &places });
-    let shorter = |trace: &mut PathTrace<'_>, factor: f64| {
-        let time_step = motion.time_step * factor;
-        if let Some(motion) = &mut trace.at.motion {
-            motion.time_step = time_step;
-        }
-        match motion.steps {
-            _ if time_step >= SHORTEST_TIME_STEP => Ok(Advance::Again),
-            0 => Err(NoRest::NoWay.into()),
-            _ => Err(StopReason::StepUnderflow.into()),
-        }
-    };
     let moved = match scene.take(trace, &TimeStep { springs, raised: motion.raised, load_change, expected }) {
         Ok(moved) if moved.is_stable != Some(false) => moved,
-        Ok(_) | Err(NotMoved::TooLong) => return shorter(trace, 0.25),
+        Ok(_) | Err(NotMoved::TooLong) => return shorten(trace, 0.25),
         Err(NotMoved::Cancelled) => return Err(StopReason::Cancelled.into()),
     };
     let mut velocity = velocity(structure, trace, &moved, motion.time_step);
@@ -123,7 +112,7 @@ pub(super) fn advance(
     let ratio = error / (settings.tolerance * way.max(SHORT_WAY));
     let factor = quantised((SAFETY / ratio.max(1e-3).sqrt()).clamp(LARGEST_REDUCTION, LARGEST_GROWTH));
     if ratio > ACCEPTED_MULTIPLE {
-        return shorter(trace, factor.min(0.5));
+        return shorten(trace, factor.min(0.5));
     }
     if pushed && settings.kind == JumpMotionKind::Inertial {
         // It is set beside its state and starts from rest there.
@@ -141,6 +130,17 @@ pub(super) fn advance(
     };
     accept(trace, moved, after);
     Ok(Advance::Moving)
+}
+
+/// Lets the next time step be shorter.
+fn shorten(trace: &mut PathTrace<'_>, factor: f64) -> Result<Advance, JumpEnd> {
+    let Some(motion) = &mut trace.at.motion else { return Err(StopReason::NoEquilibrium.into()) };
+    motion.time_step *= factor;
+    match motion.steps {
+        _ if motion.time_step >= SHORTEST_TIME_STEP => Ok(Advance::Again),
+        0 => Err(NoRest::NoWay.into()),
+        _ => Err(StopReason::StepUnderflow.into()),
+    }
 }
 
 /// The length of the motion that is expected of a time step.

@@ -4,6 +4,7 @@ use crate::continuation::path_state::row_conversion::status;
 use crate::continuation::scene::Scene;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::multi_contact::changeable_contacts::Standing;
+use crate::mechanics::problem::loading::Loading;
 use crate::result::increment::Status;
 use std::sync::Arc;
 
@@ -51,6 +52,26 @@ pub(crate) fn describe_change<'a>(
         }
     }
     if parts.is_empty() { "contact touches the limit of its mode and keeps it".to_owned() } else { parts.join("; ") }
+}
+
+/// Contacts that are named where they slip from the start; the others are counted.
+const MOST_SLIPPING: usize = 12;
+
+/// Description of the contacts that slip against friction from the start; `None` where there are none.
+pub(crate) fn describe_slipping<'a>(
+    names: impl Iterator<Item = &'a (Arc<str>, Arc<str>)>,
+    loading: Loading<'_>,
+    modes: &[Mode],
+) -> Option<String> {
+    let slips = |contact: usize| status(modes[contact]) == Status::Slip && loading.contacts[contact].tangents() > 0;
+    let named = names.enumerate().filter(|(contact, _)| slips(*contact));
+    let mut parts: Vec<String> = named.map(|(_, (node, obstacle))| format!("{node} on {obstacle}: slip")).collect();
+    let more = parts.len().saturating_sub(MOST_SLIPPING);
+    parts.truncate(MOST_SLIPPING);
+    if more > 0 {
+        parts.push(format!("and {more} more"));
+    }
+    (!parts.is_empty()).then(|| parts.join("; "))
 }
 
 /// Nodes that a description of a motion names.

@@ -66,11 +66,19 @@ export class ContinueForm {
       element("p", { class: "quiet" },
         `Follow the ${kindWords(point.kind)} at increment ${index} as a number of the model varies, such as its load over friction.
         Another limit point, bifurcation point or contact change is followed where it is the shown increment.`),
+      slipsInPlane(model) ? element("p", { class: "quiet" },
+        `In space a point cannot be followed where contacts slip against friction on the way to it, since the direction of
+        slip turns: sweep the number instead.`) : null,
       element("datalist", { id: "curve-parameters" }, places.map((place) => element("option", { value: place }))),
       element("div", { class: "actions" },
         element("label", {}, "Place ", parameter), element("label", {}, "from ", from), element("label", {}, "to ", to),
         button("Follow the point", (event) => follow(event.target), { id: "continue" })), problem);
   }
+}
+
+/** Whether contacts of the model may slip against friction in a plane. */
+function slipsInPlane({ dimension, contacts = [] }) {
+  return dimension === 3 && contacts.some(({ friction }) => friction > 0);
 }
 
 /** Pointers to numbers that are often varied. */
