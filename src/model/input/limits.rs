@@ -32,8 +32,9 @@ pub const MAX_ROWS_UNASKED: usize = 100;
 pub const MAX_STAGES: usize = 1_000;
 /// Turns of the load in a stage's `history`, over all its `cycles`.
 pub const MAX_TURNS: u64 = 10_000;
-/// Lower bound of `analysis.jump_motion.tolerance`: the time steps of a jump grow with its inverse.
-pub const MIN_JUMP_TOLERANCE: f64 = 1e-6;
+/// Lower bound of `analysis.jump_motion.tolerance`: the number of time steps of a jump grows with the inverse of its
+/// root.
+pub const MIN_JUMP_TOLERANCE: f64 = 1e-8;
 /// Upper bound of `analysis.jump_motion.max_steps`.
 pub const MAX_JUMP_STEPS: u64 = 10_000_000;
 /// Free displacement components. From some hundred on matrices are sparse.

@@ -36,9 +36,9 @@ pub struct JumpMotion {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0))]
     pub damping_ratio: Option<f64>,
-    /// Largest error of a time step over the length of the way so far; at least 1e-6, below 1.
+    /// Largest error of a time step over the length of the way so far; at least 1e-8, below 1.
     #[serde(default = "default_tolerance")]
-    #[cfg_attr(feature = "server", schema(minimum = 1e-6, exclusive_maximum = 1.0))]
+    #[cfg_attr(feature = "server", schema(minimum = 1e-8, exclusive_maximum = 1.0))]
     pub tolerance: f64,
     /// Time steps of a jump before it is given up; 1 or more.
     #[serde(default = "default_max_steps")]
