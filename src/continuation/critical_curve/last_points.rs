@@ -96,7 +96,8 @@ impl LastPoints {
         DirectionEnd::OffPath { value: first.parameter, last: on.map(|on| on.parameter), place, end: Box::new(end) }
     }
 
-    /// The last point before one that is on no path that is on one; that one may be close to a change.
+    /// The last of the points from `on`, which is on a path, to `off`, which is not, up to which all are on paths. Points
+    /// close to a change count here: that a path has such a point is certain, that it has none is not.
     fn last_on_path<'a>(
         &'a self,
         on: &'a PassedCritical,

@@ -1,8 +1,13 @@
 //! Two changes of contact by which a path comes to its critical point meet in the parameter and vanish, as where a contact
 //! slips along a stretch that shrinks to nothing.
 //!
-//! The event function of the first touches zero there: the changes are apart by the root of the distance in the parameter,
-//! and neither is found past it.
+//! At the value `p*` where they meet, the event function of the first touches zero without passing it (a fold): the states
+//! `x1` and `x2` of the two are apart by the root of the distance in the parameter, and neither is found past it. The square
+//! of their distance, known at the last two values `p1` and `p2` of the curve, gives the value:
+//!
+//! ```text
+//! d_i = |x2(p_i) - x1(p_i)|^2,    p* = p2 + d_2 (p2 - p1) / (d_1 - d_2)
+//! ```
 
 use crate::continuation::critical_curve::curve_position::CurvePosition;
 use crate::continuation::critical_curve::history::contact_history::PointClosing;

@@ -48,8 +48,8 @@ pub(crate) const PAST_CHANGE: [f64; 3] = [0.25, 1.0 / 32.0, 1.0 / 256.0];
 /// Points closer to a change than this part of the longest step are not compared with paths.
 pub(crate) const CLEAR_OF_CHANGE: f64 = 0.2;
 
-/// Nor points closer than this to the value past which the curve is lost: the steps up to it become short, and all points
-/// between the last long step and that value may be on no path.
+/// Points closer than this part of the longest step to the value past which the curve is lost are not compared with paths. It
+/// is small, since steps become short before that value, and all points after the last long step may be on no path.
 pub(crate) const CLEAR_OF_LOSS: f64 = 1e-3;
 
 /// A point is on a path if a limit point of the path is as near as this, relative to the size of the state. Both are exact to

@@ -115,7 +115,7 @@ impl TimeStepScene {
         let present = &trace.scene.stages[trace.at.stage];
         self.scene.stages.truncate(self.stages);
         let of = |pattern: LoadPattern, ends: Vec<End>| {
-            // Of directions among which the rule does not decide, the forces rise along one.
+            // Where the rule does not decide between directions, the one along which the forces rise is taken.
             let (pattern, control) = (Arc::new(pattern), StageControl::Load);
             StageLoad { of_stage: Arc::clone(&pattern), sense: 1.0, pattern, ends, control, ..present.clone() }
         };
