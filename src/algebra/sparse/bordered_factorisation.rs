@@ -77,13 +77,28 @@ impl SparseFactorisation {
     fn finds_what_is_known(&self) -> bool {
         let first = |row: usize| 1.0 + (row % 7) as f64 / 8.0;
         let second = |row: usize| if row % 3 == 1 { -1.0 } else { 1.0 - (row % 11) as f64 / 16.0 };
+        let scales = self.column_scales();
         let comes_out = |entry: &dyn Fn(usize) -> f64| {
-            let known = DVector::from_fn(self.matrix.size(), |row, _| entry(row));
+            let known = DVector::from_fn(self.matrix.size(), |row, _| scales[row] * entry(row));
             let (mut values, mut sizes) = (DVector::zeros(known.len()), vec![0.0; known.len()]);
             self.matrix.multiply(known.as_slice(), values.as_mut_slice(), &mut sizes);
-            self.solve(&mut values) && (values - known).amax() <= KNOWN_SOLUTION_ERROR
+            self.solve(&mut values) && (values - known).component_div(&scales).amax() <= KNOWN_SOLUTION_ERROR
         };
         comes_out(&first) && comes_out(&second)
+    }
+
+    /// The magnitude of each unknown at which its terms are about as large as the others': 1 for motions; for what a
+    /// border stands for, which causes forces of about 1 where stiffnesses may be 1e9, the ratio of the largest
+    /// entries.
+    fn column_scales(&self) -> DVector<f64> {
+        let largest = |entries: &SparseEntries| entries.iter().fold(0.0_f64, |most, (_, value)| most.max(value.abs()));
+        let within = self.matrix.largest_within();
+        let borders = self.matrix.right.iter().map(|entries| match largest(entries) {
+            most if most > 0.0 && within > 0.0 => within / most,
+            _ => 1.0,
+        });
+        let motions = std::iter::repeat_n(1.0, self.matrix.pattern.size());
+        DVector::from_iterator(self.matrix.size(), motions.chain(borders))
     }
 
     /// Number of rows of the matrix.

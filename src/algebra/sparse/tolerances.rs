@@ -17,10 +17,10 @@ pub(crate) const ACCEPTED_BACKWARD_ERROR: f64 = 1e-11;
 /// solutions or a new factorisation decide, so that the value affects only effort.
 pub(crate) const REGULAR_PIVOT_RATIO: f64 = 1e-6;
 
-/// Error of a recovered known solution with entries of about 1 above which the matrix counts as singular. With the
-/// usual backward error 1e-15 an error of 1e-3 needs a condition number of about 1e12, and a matrix that is singular to
-/// working precision gives errors of about 1: the bound lies between the two, and three correct digits suffice for a
-/// Newton correction.
+/// Error of a recovered known solution, relative to the scales of its entries, above which the matrix counts as
+/// singular. With the usual backward error 1e-15 an error of 1e-3 needs a condition number of about 1e12, and a matrix
+/// that is singular to working precision gives errors of about 1: the bound lies between the two, and three correct
+/// digits suffice for a Newton correction.
 pub(crate) const KNOWN_SOLUTION_ERROR: f64 = 1e-3;
 
 /// Largest ratio of the second correction to the first at which two matrices count as near: an estimate of the norm of
