@@ -3,6 +3,7 @@
 use super::paths::typed;
 use super::random::Numbers;
 use arcslip::model::JobRequest;
+use arcslip::model::request::Obstacle;
 use serde_json::{Map, Value, json};
 
 type Vector = [f64; 3];
@@ -114,4 +115,25 @@ pub fn random_corner(seed: u64) -> JobRequest {
         },
         "analysis": {"arc_length": {"initial": 0.1, "min": 1e-9, "max": 0.2}, "max_increments": 400}
     }))
+}
+
+/// The same with cylinders in place of balls, touched at the same points, with axes of any direction; `None` where there is
+/// no ball.
+pub fn random_corner_on_cylinders(seed: u64) -> Option<JobRequest> {
+    let mut numbers = Numbers(seed.wrapping_mul(15_485_863).wrapping_add(5));
+    let mut request = random_corner(seed);
+    let model = &mut request.model;
+    let mut count = 0;
+    for contact in &model.contacts {
+        let obstacle = &mut model.obstacles[&contact.obstacle];
+        let Obstacle::Ball { center, radius, side } = obstacle else { continue };
+        let place = &model.nodes[&contact.node];
+        let outward = unit(&[0, 1, 2].map(|k| place[k] - center[k]));
+        let other = of_size(&mut numbers, 1.0, 1.0);
+        let axis = add(&other, -dot(&other, &outward), &outward);
+        let point: Vec<f64> = (0..3).map(|k| center[k] + axis[k]).collect();
+        *obstacle = Obstacle::cylinder(point, axis.to_vec(), *radius, *side);
+        count += 1;
+    }
+    (count > 0).then_some(request)
 }

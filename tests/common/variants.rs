@@ -58,6 +58,10 @@ pub fn in_units(mut request: JobRequest, length: f64, force: f64) -> JobRequest 
                 scale(center, length);
                 *radius *= length;
             }
+            Obstacle::Cylinder { point, radius, .. } => {
+                scale(point, length);
+                *radius *= length;
+            }
             Obstacle::Polyline(polyline) => {
                 polyline.points.iter_mut().for_each(|point| scale(point, length));
                 polyline.rounding.iter_mut().for_each(|rounding| *rounding *= length);
@@ -106,6 +110,10 @@ pub fn about_axes(mut request: JobRequest, axes: &Axes, shift: [f64; 3]) -> JobR
                 *normal = turned(axes, normal);
             }
             Obstacle::Ball { center, .. } => *center = place(center),
+            Obstacle::Cylinder { point, axis, .. } => {
+                *point = place(point);
+                *axis = turned(axes, axis);
+            }
             Obstacle::Polyline(polyline) => polyline.points.iter_mut().for_each(|point| *point = place(point)),
         }
     }
@@ -155,6 +163,7 @@ pub fn turned_in_plane(mut request: JobRequest, angle: f64, shift: f64) -> JobRe
                 *normal = turn(normal);
             }
             Obstacle::Ball { center, .. } => *center = place(center),
+            Obstacle::Cylinder { .. } => unreachable!("a cylinder is an obstacle in space"),
             Obstacle::Polyline(polyline) => polyline.points.iter_mut().for_each(|point| *point = place(point)),
         }
     }

@@ -20,6 +20,7 @@ mod corner_in_space;
 mod creep;
 mod curved;
 mod cycle;
+mod cylinders;
 mod endings;
 mod exact_scenes;
 mod folded_slip;

@@ -192,8 +192,15 @@ fn a_closed_cycle_of_rotations_comes_back_to_no_stress() {
     assert!(moved < 1e-9, "{moved:e}");
 }
 
+/// What a rod is pushed against.
+#[derive(Clone, Copy)]
+enum Shape {
+    Ball,
+    Cylinder,
+}
+
 /// A quarter circle out of a wall, pushed against two rough obstacles by its tip's load; everything turned about an axis.
-fn on_obstacles(turn: &Rotation3<f64>) -> JobRequest {
+fn on_obstacles(turn: &Rotation3<f64>, shape: Shape) -> JobRequest {
     let turned = |vector: [f64; 3]| -> [f64; 3] { (turn * Vector3::from(vector)).into() };
     let places: Vec<[f64; 3]> = (0..=12)
         .map(|k| {
@@ -220,7 +227,11 @@ fn on_obstacles(turn: &Rotation3<f64>) -> JobRequest {
             "dimension": 3, "nodes": nodes, "elements": elements, "supports": {"n0": CLAMPED}, "contacts": contacts,
             "obstacles": {
                 "floor": {"kind": "plane", "point": turned([0.0, 0.0, -0.1]), "normal": turned([0.0, 0.0, 1.0])},
-                "ball": {"kind": "ball", "center": turned([1.5, 1.1, 0.0]), "radius": 0.5},
+                "ball": match shape {
+                    Shape::Ball => json!({"kind": "ball", "center": turned([1.5, 1.1, 0.0]), "radius": 0.5}),
+                    Shape::Cylinder => json!({"kind": "cylinder", "point": turned([1.5, 1.1, 0.0]),
+                                              "axis": turned([0.5, 0.2, 2.0]), "radius": 0.5}),
+                },
             },
             "stages": [
                 {"name": "press", "forces": {"n12": turned([0.0, 0.0, -2.0])}, "until": {"load_above": 1.0}},
@@ -237,23 +248,31 @@ fn on_obstacles(turn: &Rotation3<f64>) -> JobRequest {
 
 #[test]
 fn a_rod_is_pushed_along_rough_obstacles() {
-    let traced = traced(&on_obstacles(&Rotation3::identity()));
-    println!("{} increments, {:?}", traced.increments.len(), traced.report.stop_reason);
-    let slipped = |increment: &Increment| increment.contacts.iter().any(|contact| contact.status == Status::Slip);
-    assert!(traced.increments.iter().filter(|increment| slipped(increment)).count() > 5);
-    assert!(last(&traced).energy.dissipated > 1e-3, "{:?} {:?}", last(&traced).energy, traced.report);
+    for shape in [Shape::Ball, Shape::Cylinder] {
+        let traced = traced(&on_obstacles(&Rotation3::identity(), shape));
+        println!("{} increments, {:?}", traced.increments.len(), traced.report.stop_reason);
+        let slipped = |increment: &Increment| increment.contacts.iter().any(|contact| contact.status == Status::Slip);
+        assert!(traced.increments.iter().filter(|increment| slipped(increment)).count() > 5);
+        assert!(last(&traced).energy.dissipated > 1e-3, "{:?} {:?}", last(&traced).energy, traced.report);
+    }
 }
 
 #[test]
 fn a_common_rotation_changes_nothing() {
     let turn = Rotation3::new(Vector3::new(0.8, -1.7, 0.6));
     // Until round-off decides about a step that is on the verge of being shortened.
-    let first = |turn: &Rotation3<f64>| {
-        let mut request = on_obstacles(turn);
+    let first = |turn: &Rotation3<f64>, shape: Shape| {
+        let mut request = on_obstacles(turn, shape);
         request.analysis.max_increments = 120;
         judged(&request)
     };
-    let (one, other) = (first(&Rotation3::identity()), first(&turn));
+    for shape in [Shape::Ball, Shape::Cylinder] {
+        assert_turned(&turn, &first(&Rotation3::identity(), shape), &first(&turn, shape));
+    }
+}
+
+/// A path is another one, turned.
+fn assert_turned(turn: &Rotation3<f64>, one: &Traced, other: &Traced) {
     assert_eq!(one.increments.len(), other.increments.len());
     for (one, other) in one.increments.iter().zip(&other.increments) {
         assert!((one.load_factor - other.load_factor).abs() < 1e-8, "{} {}", one.load_factor, other.load_factor);
@@ -321,7 +340,7 @@ fn a_frame_in_a_plane_is_the_plane_frame() {
 
 #[test]
 fn a_path_taken_up_again_is_the_same_to_the_bit() {
-    let mut request = on_obstacles(&Rotation3::identity());
+    let mut request = on_obstacles(&Rotation3::identity(), Shape::Ball);
     request.analysis.max_increments = 60;
     let scene = Scene::new(&request).expect("a scene");
     let line = |mut increment: Increment| {

@@ -54,6 +54,13 @@ class Building(unittest.TestCase):
             "analysis": {"max_increments": 5, "arc_length": {"max": 0.1}},
         })
 
+    def test_a_cylinder(self):
+        model = arcslip.Model(3)
+        model.node("a", 0, 0, 1)
+        self.assertEqual(model.cylinder("drum", (0, 0, -1), (1, 0, 0), 2), "drum")
+        drum = {"kind": "cylinder", "point": [0, 0, -1], "axis": [1, 0, 0], "radius": 2, "side": "outside"}
+        self.assertEqual(model.request()["model"]["obstacles"], {"drum": drum})
+
     def test_a_request_is_a_copy(self):
         model = arcslip.Model(2)
         model.node("a", 0, 0)

@@ -137,7 +137,7 @@ fn is_plain(equations: &ModeSystem<'_>, entry: &Changeable) -> bool {
     let [contact] = entry.contacts[..] else { return false };
     let Some(node) = equations.loading.contacts[contact].kinematics.node() else { return false };
     let mut freedoms = structure.translations_of(node);
-    equations.loading.frame(contact, equations.anchor).curvature == 0.0
+    equations.loading.frame(contact, equations.anchor).curvature.is_zero()
         && freedoms.all(|freedom| structure.unknown_of[freedom].is_some())
 }
 

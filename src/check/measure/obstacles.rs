@@ -13,7 +13,7 @@ const EQUALLY_ALIGNED: f64 = 1e-9;
 /// An obstacle at rest.
 #[derive(Debug, Clone)]
 pub(super) struct MeasuredObstacle {
-    /// A point of a plane, the centre of a ball, the first point of a polyline.
+    /// A point of a plane, the centre of a ball, a point on the axis of a cylinder, the first point of a polyline.
     place: MeasuredVector,
     shape: ObstacleShape,
 }
@@ -24,6 +24,11 @@ enum ObstacleShape {
     Plane(MeasuredVector),
     /// `sign` is 1 if the free side is outside, otherwise -1.
     Ball {
+        radius: f64,
+        sign: f64,
+    },
+    Cylinder {
+        axis: MeasuredVector,
         radius: f64,
         sign: f64,
     },
@@ -49,8 +54,12 @@ impl MeasuredObstacle {
                 Self { place: padded(point), shape: ObstacleShape::Plane(normal * (1.0 / normal.norm())) }
             }
             Posted::Ball { center, radius, side } => {
-                let sign = if *side == Side::Outside { 1.0 } else { -1.0 };
-                Self { place: padded(center), shape: ObstacleShape::Ball { radius: *radius, sign } }
+                Self { place: padded(center), shape: ObstacleShape::Ball { radius: *radius, sign: sign_of(*side) } }
+            }
+            Posted::Cylinder { point, axis, radius, side } => {
+                let axis = padded(axis).normalize();
+                let shape = ObstacleShape::Cylinder { axis, radius: *radius, sign: sign_of(*side) };
+                Self { place: padded(point), shape }
             }
             Posted::Polyline(polyline) => {
                 let origin = polyline.points.first().map_or_else(MeasuredVector::zeros, |point| padded(point));
@@ -70,10 +79,9 @@ impl MeasuredObstacle {
         let from = (place - self.place) + (displacement - shift);
         let (gap, normal, size) = match &self.shape {
             ObstacleShape::Plane(normal) => (from.dot(normal), *normal, 0.0),
-            ObstacleShape::Ball { radius, sign } => {
-                let distance = from.norm();
-                let normal = if distance > 0.0 { from * (sign / distance) } else { MeasuredVector::x() };
-                (sign * (distance - radius), normal, *radius)
+            ObstacleShape::Ball { radius, sign } => around_center(from, *radius, *sign),
+            ObstacleShape::Cylinder { axis, radius, sign } => {
+                around_center(from - axis * from.dot(axis), *radius, *sign)
             }
             ObstacleShape::Polyline(curve) => {
                 let (gap, [x, y]) = curve.gap([from.x, from.y]);
@@ -83,6 +91,18 @@ impl MeasuredObstacle {
         let reach = [place, &self.place, displacement, shift].into_iter().map(largest).fold(size, f64::max);
         MeasuredFrame { gap, rounding: 16.0 * f64::EPSILON * reach, normal, tangents: tangents(dimension, &normal) }
     }
+}
+
+/// 1 where the free side is outside, otherwise -1.
+fn sign_of(side: Side) -> f64 {
+    if side == Side::Outside { 1.0 } else { -1.0 }
+}
+
+/// The gap, the normal and the radius at a place relative to the centre.
+fn around_center(from: MeasuredVector, radius: f64, sign: f64) -> (f64, MeasuredVector, f64) {
+    let distance = from.norm();
+    let normal = if distance > 0.0 { from * (sign / distance) } else { MeasuredVector::x() };
+    (sign * (distance - radius), normal, radius)
 }
 
 impl MeasuredFrame {

@@ -54,13 +54,12 @@ pub fn respond(
     }
     let n = &frame.normal;
     let project = across(n);
+    let turn = frame.shape_operator();
     let normal = penalties.normal * -frame.gap + 0.0;
     let reaction = Reaction { normal, tangential: [0.0; 3] };
     let mut response = PenaltyResponse { status: Status::Slip, reaction, ..PenaltyResponse::default() };
     // -∂(r_n n)/∂x
-    let normal_part = |row: usize, column: usize| {
-        penalties.normal * n[row] * n[column] - normal * frame.curvature * project[row][column]
-    };
+    let normal_part = |row: usize, column: usize| penalties.normal * n[row] * n[column] - normal * turn[row][column];
     response.stiffness = matrix(normal_part);
     response.force = vector(|k| normal * n[k]);
     if !friction.is_rough() {
@@ -71,10 +70,10 @@ pub fn respond(
     let trial = times(&project, &unprojected);
     let size = size(&trial);
     let along_normal = dot(n, &unprojected);
+    let turned = times(&turn, &unprojected);
     // ∂(trial)/∂x, including the rotation of the tangent plane
     let trial_slope = matrix(|row, column| {
-        -penalties.tangential * project[row][column]
-            - frame.curvature * (along_normal * project[row][column] + n[row] * trial[column])
+        -penalties.tangential * project[row][column] - (along_normal * turn[row][column] + n[row] * turned[column])
     });
     let bound = friction.bound(normal);
     let slope = if size <= bound {

@@ -9,7 +9,7 @@ use crate::continuation::scene::tolerances::{COINCIDENCE_TOLERANCE, SINGLE_MOTIO
 use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::kinematics::Kinematics;
 use crate::mechanics::contact::obstacle::RigidSurface;
-use crate::mechanics::contact::vector::{Vector, size};
+use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size};
 use crate::mechanics::contact::{ContactPair, Sliding};
 use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::contact_jacobian;
@@ -18,7 +18,7 @@ use crate::mechanics::problem::node_contact_forces::Corner;
 use crate::mechanics::structure::Structure;
 use crate::mechanics::structure::elements::solid::pressure_face::PRESSURE_UNIT;
 use crate::model::input::limits::PENETRATION_TOLERANCE;
-use crate::model::request::{self, Analysis, Model, Side};
+use crate::model::request::{self, Analysis, Model};
 use crate::model::solids::contact_surfaces::{BodyContact, ContactSurfaces};
 use crate::resources::budget;
 use crate::result::plan::LeftOut;
@@ -181,6 +181,15 @@ fn ordered(value: f64) -> u64 {
     if value.is_sign_negative() { !bits } else { bits | (1 << 63) }
 }
 
+/// A vector of any length but 0, made a unit vector in space without overflow.
+fn unit_of(values: &[f64]) -> Vector {
+    let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let size = norm(&values.iter().map(|value| value / largest).collect::<Vec<f64>>()) * largest;
+    let mut unit = [0.0; 3];
+    unit.iter_mut().zip(values).for_each(|(component, value)| *component = value / size);
+    unit
+}
+
 /// Whether two contacts coincide: the same node and the same surface.
 fn coincide(first: &ContactPair, second: &ContactPair) -> bool {
     let near = |a: &Vector, b: &Vector| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= COINCIDENCE_TOLERANCE);
@@ -188,10 +197,20 @@ fn coincide(first: &ContactPair, second: &ContactPair) -> bool {
         (RigidSurface::Plane { normal: a }, RigidSurface::Plane { normal: b }) => near(a, b),
         (RigidSurface::Ball { offset: a, side: x }, RigidSurface::Ball { offset: b, side: y }) => near(a, b) && x == y,
         (
+            RigidSurface::Cylinder { axis: a, offset: x, side: u },
+            RigidSurface::Cylinder { axis: b, offset: y, side: v },
+        ) => (near(a, b) || near(a, &scaled(b, -1.0))) && near(x, y) && u == v,
+        (
             RigidSurface::Curve { curve: a, offset: x, side: u, .. },
             RigidSurface::Curve { curve: b, offset: y, side: v, .. },
         ) => (Arc::ptr_eq(a, b) || a == b) && near(x, y) && u == v,
-        (RigidSurface::Plane { .. } | RigidSurface::Ball { .. } | RigidSurface::Curve { .. }, _) => false,
+        (
+            RigidSurface::Plane { .. }
+            | RigidSurface::Ball { .. }
+            | RigidSurface::Cylinder { .. }
+            | RigidSurface::Curve { .. },
+            _,
+        ) => false,
     };
     first.kinematics.node().is_some()
         && first.kinematics.node() == second.kinematics.node()
@@ -204,7 +223,7 @@ fn coincide(first: &ContactPair, second: &ContactPair) -> bool {
 fn curves(model: &Model, length: f64) -> HashMap<&str, Arc<PlaneCurve>> {
     let polylines = model.obstacles.iter().filter_map(|(name, obstacle)| match obstacle {
         request::Obstacle::Polyline(polyline) => Some((name.as_str(), polyline)),
-        request::Obstacle::Plane { .. } | request::Obstacle::Ball { .. } => None,
+        request::Obstacle::Plane { .. } | request::Obstacle::Ball { .. } | request::Obstacle::Cylinder { .. } => None,
     });
     polylines
         .filter_map(|(name, polyline)| Some((name, Arc::new(polyline.curve().ok()?.in_units_of(length)))))
@@ -231,12 +250,17 @@ fn build_contact(
         request::Obstacle::Ball { center, radius, side } => {
             let mut offset = [0.0; 3];
             (0..dimension).for_each(|k| offset[k] = (place[k] - center[k]) / length);
-            let side = match side {
-                Side::Outside => 1.0,
-                Side::Inside => -1.0,
-            };
+            let side = side.sign();
             let gap = side * (size(&offset) * length - radius);
             (RigidSurface::Ball { offset, side }, snapped(gap, reach(center).max(*radius)))
+        }
+        request::Obstacle::Cylinder { point, axis, radius, side } => {
+            let (axis, side) = (unit_of(axis), side.sign());
+            let mut from = [0.0; 3];
+            (0..dimension).for_each(|k| from[k] = (place[k] - point[k]) / length);
+            let offset = add(&from, -dot(&from, &axis), &axis);
+            let gap = side * (size(&offset) * length - radius);
+            (RigidSurface::Cylinder { axis, offset, side }, snapped(gap, reach(point).max(*radius)))
         }
         request::Obstacle::Polyline(polyline) => {
             let (origin, side) = (polyline.origin(), polyline.free_side());
@@ -247,10 +271,7 @@ fn build_contact(
             (RigidSurface::Curve { curve, offset, side, before }, snapped(before * length, far))
         }
         request::Obstacle::Plane { point, normal } => {
-            let largest = normal.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-            let size = norm(&normal.iter().map(|value| value / largest).collect::<Vec<f64>>()) * largest;
-            let mut unit = [0.0; 3];
-            normal.iter().enumerate().for_each(|(k, value)| unit[k] = value / size);
+            let unit = unit_of(normal);
             let gap: f64 = (0..dimension).map(|k| (place[k] - point[k]) * unit[k]).sum();
             (RigidSurface::Plane { normal: unit }, snapped(gap, reach(point)))
         }

@@ -33,14 +33,33 @@ pub struct Frame {
     pub normal: Vector,
     /// Orthonormal tangents, as many as there are directions of sliding; the others are zero.
     pub tangents: [Vector; 2],
-    /// The curvature `κ` in `dn = κ (dx - n (n·dx))`; 0 for planes.
-    pub curvature: f64,
+    pub curvature: Curvature,
     sliding: Sliding,
+}
+
+/// How the normal turns with the position on an obstacle: `dn = W dx` with the shape operator `W = κ (I - n nᵀ - a aᵀ)`.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Curvature {
+    /// `κ`; 0 for planes. One over a length, dimensionless.
+    pub value: f64,
+    /// `a`, the unit vector along the straight lines of a cylinder; zero elsewhere.
+    pub straight: Vector,
+}
+
+impl Curvature {
+    /// The same in all tangential directions, or in the only one.
+    pub fn uniform(value: f64) -> Self {
+        Self { value, straight: [0.0; 3] }
+    }
+
+    pub fn is_zero(&self) -> bool {
+        self.value == 0.0
+    }
 }
 
 impl Frame {
     #[inline(always)]
-    pub(super) fn new(gap: f64, normal: Vector, curvature: f64, sliding: Sliding) -> Self {
+    pub(super) fn new(gap: f64, normal: Vector, curvature: Curvature, sliding: Sliding) -> Self {
         let tangents = match sliding {
             Sliding::None => [[0.0; 3]; 2],
             // In 2D the tangent is the normal turned clockwise by a right angle, without rounding.
@@ -53,15 +72,35 @@ impl Frame {
         Self { gap, normal, tangents, curvature, sliding }
     }
 
-    /// The change of the normal with a motion.
+    /// The change `W dx` of the normal with a motion.
     pub fn normal_change(&self, motion: &Vector) -> Vector {
-        scaled(&add(motion, -dot(motion, &self.normal), &self.normal), self.curvature)
+        let Curvature { value, straight } = &self.curvature;
+        let tangential = add(motion, -dot(motion, &self.normal), &self.normal);
+        scaled(&add(&tangential, -dot(motion, straight), straight), *value)
+    }
+
+    /// The matrix `W`.
+    pub fn shape_operator(&self) -> [Vector; 3] {
+        let axes: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        axes.map(|axis| self.normal_change(&axis))
+    }
+
+    /// The entry `t·W s` of the shape operator for two perpendicular tangents.
+    pub fn curvature_across(&self, first: &Vector, second: &Vector) -> f64 {
+        let Curvature { value, straight } = &self.curvature;
+        -value * dot(first, straight) * dot(second, straight)
+    }
+
+    /// The normal curvature `t·W t` along a unit tangent.
+    pub fn curvature_along(&self, tangent: &Vector) -> f64 {
+        let along = dot(tangent, &self.curvature.straight);
+        self.curvature.value * (1.0 - along * along)
     }
 
     /// The change of the first tangent with a motion, where sliding is along a line.
     pub fn tangent_change(&self, motion: &Vector) -> Vector {
         let Sliding::Line { across } = self.sliding else { return [0.0; 3] };
-        if self.curvature == 0.0 {
+        if self.curvature.is_zero() {
             return [0.0; 3];
         }
         let turn = cross(&self.normal_change(motion), &across);

@@ -17,7 +17,7 @@ pub(crate) mod tolerances;
 pub mod vector;
 
 use coulomb::CoulombFriction;
-pub use frame::{Frame, Sliding, tangents_in_space};
+pub use frame::{Curvature, Frame, Sliding, tangents_in_space};
 use kinematics::Kinematics;
 use obstacle::RigidSurface;
 use serde::{Deserialize, Serialize};

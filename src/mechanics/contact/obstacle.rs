@@ -1,7 +1,8 @@
 //! Obstacles: the distance of a node from an obstacle, and its direction.
 
 use crate::algebra::plane_curve::PlaneCurve;
-use crate::mechanics::contact::vector::{Vector, add, dot, size, unit};
+use crate::mechanics::contact::frame::Curvature;
+use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size, unit};
 use std::sync::Arc;
 
 /// The surface of a rigid obstacle, relative to one contact.
@@ -12,6 +13,15 @@ pub enum RigidSurface {
     /// A circle or sphere.
     Ball {
         /// The position of the undeformed node, relative to the centre.
+        offset: Vector,
+        /// 1 where nodes are free outside, -1 where they are free inside.
+        side: f64,
+    },
+    /// A circular cylinder without ends, in space.
+    Cylinder {
+        /// Unit vector along the axis.
+        axis: Vector,
+        /// The position of the undeformed node, relative to the axis and perpendicular to it.
         offset: Vector,
         /// 1 where nodes are free outside, -1 where they are free inside.
         side: f64,
@@ -29,28 +39,28 @@ pub enum RigidSurface {
 }
 
 impl RigidSurface {
-    /// The change of the distance since the undeformed position, the unit normal into the free side, and the curvature
-    /// `κ`: the normal turns by `dn = κ (dx - n (n·dx))`.
+    /// The change of the distance since the undeformed position, the unit normal into the free side, and its
+    /// curvature.
     ///
     /// `relative` is the node's displacement less the obstacle's.
     #[inline(always)]
-    pub(super) fn distance(&self, relative: &Vector) -> (f64, Vector, f64) {
+    pub(super) fn distance(&self, relative: &Vector) -> (f64, Vector, Curvature) {
         match self {
-            Self::Plane { normal } => (dot(normal, relative), *normal, 0.0),
+            Self::Plane { normal } => (dot(normal, relative), *normal, Curvature::default()),
             Self::Ball { offset, side } => {
-                let place = add(offset, 1.0, relative);
-                let (radius, before) = (size(&place), size(offset));
-                // The difference of the radii, without cancellation.
-                let change = (2.0 * dot(offset, relative) + dot(relative, relative)) / (radius + before);
-                let outward = unit(&place);
-                let normal = [side * outward[0], side * outward[1], side * outward[2]];
-                (side * change, normal, side / radius)
+                let (change, normal, curvature) = around_center(offset, relative, *side);
+                (change, normal, Curvature::uniform(curvature))
+            }
+            Self::Cylinder { axis, offset, side } => {
+                let across = add(relative, -dot(relative, axis), axis);
+                let (change, normal, value) = around_center(offset, &across, *side);
+                (change, normal, Curvature { value, straight: *axis })
             }
             Self::Curve { curve, offset, side, before } => {
                 let place = add(offset, 1.0, relative);
                 let closest = curve.closest([place[0], place[1]]);
                 let normal = [side * closest.normal[0], side * closest.normal[1], 0.0];
-                (side * closest.distance - before, normal, -side * closest.curvature_at_place())
+                (side * closest.distance - before, normal, Curvature::uniform(-side * closest.curvature_at_place()))
             }
         }
     }
@@ -58,7 +68,17 @@ impl RigidSurface {
     pub fn is_curved(&self) -> bool {
         match self {
             Self::Plane { .. } => false,
-            Self::Ball { .. } | Self::Curve { .. } => true,
+            Self::Ball { .. } | Self::Cylinder { .. } | Self::Curve { .. } => true,
         }
     }
+}
+
+/// The change of the distance from a centre, the normal and the curvature at a place that has moved by `relative`.
+#[inline(always)]
+fn around_center(offset: &Vector, relative: &Vector, side: f64) -> (f64, Vector, f64) {
+    let place = add(offset, 1.0, relative);
+    let (radius, before) = (size(&place), size(offset));
+    // The difference of the radii, without cancellation.
+    let change = (2.0 * dot(offset, relative) + dot(relative, relative)) / (radius + before);
+    (side * change, scaled(&unit(&place), side), side / radius)
 }

@@ -207,7 +207,7 @@ fn add_slip(system: &ModeSystem<'_>, contact: usize, iterate: &Iterate, kind: Ki
     }
     let turns_edge = |beside: usize| system.loading.contacts[beside].obstacle.is_curved();
     let turns = matches!(system.roles[contact], Role::Edge { beside, .. } if turns_edge(beside));
-    if frame.curvature == 0.0 && !turns {
+    if frame.curvature.is_zero() && !turns {
         return;
     }
     // The reaction turns with the position on the obstacle.

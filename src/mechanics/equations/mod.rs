@@ -296,7 +296,7 @@ impl<'a> ModeSystem<'a> {
     /// traction along this normal would therefore remain: in equilibrium, but neither pressure nor friction.
     fn hold_in_frame(&self, contact: usize, state: &mut State) {
         let held = self.loading.frame(contact, self.anchor);
-        if held.curvature == 0.0 {
+        if held.curvature.is_zero() {
             return;
         }
         let guessed = self.loading.frame(contact, state).normal;

@@ -84,7 +84,7 @@ pub(crate) fn rate_into(
                     let per_turn = if kind == Kind::Rates { 1.0 } else { pressed };
                     tangential = add(&tangential, -per_turn * values[column + 1], &across);
                 }
-                if frame.curvature != 0.0 || matches!(role, Role::Edge { .. }) {
+                if !frame.curvature.is_zero() || matches!(role, Role::Edge { .. }) {
                     let motion = system.loading.relative_rate(contact, &iterate.state, rate);
                     let change = system.direction_change(contact, iterate, &direction, &motion);
                     tangential = add(&tangential, -pressed, &change);

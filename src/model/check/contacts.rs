@@ -140,8 +140,8 @@ fn friction(contact: &Contact, at: &DocumentPlace, mistakes: &mut Mistakes) {
 
 /// Notes a contact whose reaction acts on no free component of its node.
 ///
-/// The normal of a ball or a polyline turns as the node moves, so there it matters only while the two touch, and where the node cannot
-/// move freely at all.
+/// The normal of a curved obstacle turns as the node moves, so there it matters only while the two touch, and where the
+/// node cannot move freely at all.
 fn useful(
     scope: &Scope,
     contact: &Contact,
@@ -164,10 +164,15 @@ fn useful(
         Obstacle::Ball { radius, .. } if gap.abs() <= *tolerance && !along(tolerance / radius) => {
             "touches the ball where it cannot move freely along the normal; move it, or leave the contact out"
         }
+        Obstacle::Cylinder { radius, .. } if gap.abs() <= *tolerance && !along(tolerance / radius) => {
+            "touches the cylinder where it cannot move freely along the normal; move it, or leave the contact out"
+        }
         Obstacle::Polyline(_) if gap.abs() <= *tolerance && !along(CLEARLY) => {
             "touches the polyline where it cannot move freely along the normal; move it, or leave the contact out"
         }
-        Obstacle::Plane { .. } | Obstacle::Ball { .. } | Obstacle::Polyline(_) => return true,
+        Obstacle::Plane { .. } | Obstacle::Ball { .. } | Obstacle::Cylinder { .. } | Obstacle::Polyline(_) => {
+            return true;
+        }
     };
     mistakes.add(&at.member("node"), || format!("the node {} is supported and {why}", quoted(&contact.node)));
     false
@@ -185,6 +190,8 @@ fn start(contact: &Contact, obstacle: &Obstacle, facing: &Facing, at: &DocumentP
                 Obstacle::Polyline(_) => "inside the polyline",
                 Obstacle::Ball { side: Side::Outside, .. } => "inside the ball",
                 Obstacle::Ball { side: Side::Inside, .. } => "outside the ball",
+                Obstacle::Cylinder { side: Side::Outside, .. } => "inside the cylinder",
+                Obstacle::Cylinder { side: Side::Inside, .. } => "outside the cylinder",
             };
             let turn = match obstacle {
                 Obstacle::Polyline(Polyline { closed: false, .. }) => {
@@ -197,7 +204,16 @@ fn start(contact: &Contact, obstacle: &Obstacle, facing: &Facing, at: &DocumentP
     } else if facing.normal.is_none() {
         mistakes.add(at, || {
             let (node, name) = names();
-            format!("{node} is at the centre of the ball {name}, where the ball has no normal; move it off the centre")
+            match obstacle {
+                Obstacle::Cylinder { .. } => {
+                    format!(
+                        "{node} is on the axis of the cylinder {name}, where it has no normal; move it off the axis"
+                    )
+                }
+                _ => format!(
+                    "{node} is at the centre of the ball {name}, where the ball has no normal; move it off the centre"
+                ),
+            }
         });
     }
 }

@@ -196,10 +196,17 @@ fn motions(scope: &Scope, around: &Surroundings, stage: &Stage, at: &DocumentPla
     loaded
 }
 
-/// Whether the motion maps the obstacle onto itself: a plane that moves along itself has no effect without friction.
+/// Whether the motion maps the obstacle onto itself: a plane that moves along itself and a cylinder along its axis have no
+/// effect without friction.
 fn slides_along(obstacle: &Obstacle, motion: &[f64]) -> bool {
     match obstacle {
         Obstacle::Plane { normal, .. } => dot(normal, motion).abs() <= ALONG * norm(normal) * norm(motion),
+        Obstacle::Cylinder { axis, .. } => {
+            let length = norm(axis);
+            let along = dot(axis, motion) / length;
+            let off = |(motion, axis): (&f64, &f64)| motion - along * (axis / length);
+            norm(&motion.iter().zip(axis).map(off).collect::<Vec<f64>>()) <= ALONG * norm(motion)
+        }
         Obstacle::Ball { .. } | Obstacle::Polyline(_) => false,
     }
 }

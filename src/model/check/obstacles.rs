@@ -14,7 +14,7 @@ pub(super) type Curves = Vec<Option<PlaneCurve>>;
 pub(super) fn points_of_polylines(model: &Model) -> usize {
     let points = |obstacle: &Obstacle| match obstacle {
         Obstacle::Polyline(polyline) => polyline.points.len(),
-        Obstacle::Plane { .. } | Obstacle::Ball { .. } => 0,
+        Obstacle::Plane { .. } | Obstacle::Ball { .. } | Obstacle::Cylinder { .. } => 0,
     };
     model.obstacles.values().map(points).sum()
 }
@@ -34,6 +34,17 @@ pub(super) fn obstacles(scope: &Scope, mistakes: &mut Mistakes) -> Curves {
                     mistakes.add(&at, || "the normal is zero; a vector into the free side is expected");
                 }
             }
+            Obstacle::Cylinder { .. } if dimension != 3 => {
+                mistakes.add(&at.member("kind"), || "a cylinder is an obstacle in space; in the plane take a ball");
+            }
+            Obstacle::Cylinder { point, axis, radius, side: _ } => {
+                numbers::vector(point, dimension, &at.member("point"), mistakes);
+                numbers::positive(*radius, &at.member("radius"), mistakes);
+                let at = at.member("axis");
+                if numbers::vector(axis, dimension, &at, mistakes) && largest(axis) == 0.0 {
+                    mistakes.add(&at, || "the axis is zero; a vector along it is expected");
+                }
+            }
             Obstacle::Ball { center, radius, side: _ } => {
                 numbers::vector(center, dimension, &at.member("center"), mistakes);
                 numbers::positive(*radius, &at.member("radius"), mistakes);
@@ -47,8 +58,10 @@ pub(super) fn obstacles(scope: &Scope, mistakes: &mut Mistakes) -> Curves {
 fn curve_of(polyline: &Polyline, dimension: usize, at: &DocumentPlace, mistakes: &mut Mistakes) -> Option<PlaneCurve> {
     let before = mistakes.count();
     if dimension != 2 {
-        mistakes
-            .add(&at.member("kind"), || "a polyline is an obstacle in the plane; in space there are planes and balls");
+        mistakes.add(
+            &at.member("kind"),
+            || "a polyline is an obstacle in the plane; in space there are planes, balls and cylinders",
+        );
         return None;
     }
     let Polyline { points, closed, rounding, side } = polyline;
@@ -106,7 +119,8 @@ fn note(mistake: CurveMistake, polyline: &Polyline, at: &DocumentPlace, mistakes
 pub(super) struct Facing {
     /// Distance into the free side (length).
     pub gap: f64,
-    /// Unit normal into the free side; `None` at the centre of a ball, where the normal is undefined.
+    /// Unit normal into the free side; `None` at the centre of a ball and on the axis of a cylinder, where there is
+    /// none.
     pub normal: Option<Vec<f64>>,
     /// Rounding error of the gap due to the coordinates and the radius (length).
     pub tolerance: f64,
@@ -119,6 +133,9 @@ pub(super) fn facing(scope: &Scope, node: usize, obstacle: &Obstacle, curve: Opt
         Obstacle::Polyline(polyline) => Some(facing_curve(scope, position, polyline, curve?)),
         Obstacle::Plane { point, normal } => facing_plane(scope, position, point, normal),
         Obstacle::Ball { center, radius, side } => facing_ball(scope, position, center, *radius, *side),
+        Obstacle::Cylinder { point, axis, radius, side } => {
+            facing_cylinder(scope, position, (point, axis), *radius, *side)
+        }
     }
 }
 
@@ -138,15 +155,39 @@ fn facing_ball(scope: &Scope, position: &[f64], center: &[f64], radius: f64, sid
     if !numbers::well_formed(center, scope.model.dimension) || !numbers::well_formed(&[radius], 1) || radius <= 0.0 {
         return None;
     }
-    let outward = difference(position, center);
-    let distance = norm(&outward);
     let tolerance = scope.penetration_tolerance(largest(position).max(largest(center)).max(radius));
+    Some(facing_round(&difference(position, center), radius, side, tolerance))
+}
+
+/// `None` outside space, which is reported elsewhere.
+fn facing_cylinder(
+    scope: &Scope,
+    position: &[f64],
+    (point, axis): (&[f64], &[f64]),
+    radius: f64,
+    side: Side,
+) -> Option<Facing> {
+    let well_formed = numbers::well_formed(point, 3) && numbers::well_formed(axis, 3) && largest(axis) > 0.0;
+    if scope.model.dimension != 3 || !well_formed || !numbers::well_formed(&[radius], 1) || radius <= 0.0 {
+        return None;
+    }
+    let axis = scaled(axis, norm(axis));
+    let mut outward = difference(position, point);
+    let along = dot(&outward, &axis);
+    outward.iter_mut().zip(&axis).for_each(|(component, axis)| *component -= along * axis);
+    let tolerance = scope.penetration_tolerance(largest(position).max(largest(point)).max(radius));
+    Some(facing_round(&outward, radius, side, tolerance))
+}
+
+/// The position at a vector from the centre, or from the axis and perpendicular to it.
+fn facing_round(outward: &[f64], radius: f64, side: Side, tolerance: f64) -> Facing {
+    let distance = norm(outward);
     let (gap, length) = match side {
         Side::Outside => (distance - radius, distance),
         Side::Inside => (radius - distance, -distance),
     };
-    let normal = (distance > tolerance).then(|| scaled(&outward, length));
-    Some(Facing { gap, normal, tolerance })
+    let normal = (distance > tolerance).then(|| scaled(outward, length));
+    Facing { gap, normal, tolerance }
 }
 
 fn facing_curve(scope: &Scope, position: &[f64], polyline: &Polyline, curve: &PlaneCurve) -> Facing {

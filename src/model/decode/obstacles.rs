@@ -8,6 +8,8 @@ const PLANE: Fields = Fields { what: "a plane", known: &["kind", "point", "norma
 
 const BALL: Fields = Fields { what: "a ball", known: &["kind", "center", "radius", "side"], later: &[] };
 
+const CYLINDER: Fields = Fields { what: "a cylinder", known: &["kind", "point", "axis", "radius", "side"], later: &[] };
+
 const POLYLINE: Fields =
     Fields { what: "a polyline", known: &["kind", "points", "closed", "rounding", "side"], later: &[] };
 
@@ -15,13 +17,19 @@ const POLYLINE: Fields =
 enum ObstacleKind {
     Plane,
     Ball,
+    Cylinder,
     Polyline,
 }
 
 const OBSTACLE_KIND: Choices<ObstacleKind> = Choices {
     what: "a kind of obstacle",
-    known: &[("plane", ObstacleKind::Plane), ("ball", ObstacleKind::Ball), ("polyline", ObstacleKind::Polyline)],
-    later: &["segment", "box", "cylinder"],
+    known: &[
+        ("plane", ObstacleKind::Plane),
+        ("ball", ObstacleKind::Ball),
+        ("cylinder", ObstacleKind::Cylinder),
+        ("polyline", ObstacleKind::Polyline),
+    ],
+    later: &["segment", "box"],
 };
 
 const SIDE: Choices<Side> = Choices {
@@ -34,6 +42,7 @@ pub(super) fn obstacle(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacl
     match input.kind(&OBSTACLE_KIND, mistakes)? {
         ObstacleKind::Plane => plane(input, mistakes),
         ObstacleKind::Ball => ball(input, mistakes),
+        ObstacleKind::Cylinder => cylinder(input, mistakes),
         ObstacleKind::Polyline => polyline(input, mistakes),
     }
 }
@@ -51,6 +60,15 @@ fn ball(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {
     let radius = object.required("radius", mistakes, number);
     let side = object.with_default("side", Side::default(), mistakes, side);
     Some(Obstacle::Ball { center: center?, radius: radius?, side: side? })
+}
+
+fn cylinder(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {
+    let object = input.object(&CYLINDER, mistakes)?;
+    let point = object.required("point", mistakes, numbers);
+    let axis = object.required("axis", mistakes, numbers);
+    let radius = object.required("radius", mistakes, number);
+    let side = object.with_default("side", Side::default(), mistakes, side);
+    Some(Obstacle::Cylinder { point: point?, axis: axis?, radius: radius?, side: side? })
 }
 
 fn polyline(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {

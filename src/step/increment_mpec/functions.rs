@@ -168,7 +168,7 @@ impl Problem for IncrementProgram<'_> {
                 }
                 row += 1;
             }
-            if frame.curvature != 0.0 {
+            if !frame.curvature.is_zero() {
                 add_turn_of_reaction(self, entry, (&frame, &state), x, jacobian);
             }
             add_curvature_of_motion(self, entry, (&frame, &state), x, jacobian);

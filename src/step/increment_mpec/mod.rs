@@ -443,7 +443,7 @@ impl<'a> IncrementProgram<'a> {
 impl InReach {
     /// The tangents at another position on the obstacle.
     fn tangents_at(&self, frame: &Frame) -> [Vector; 2] {
-        if self.tangents < 2 || frame.curvature == 0.0 {
+        if self.tangents < 2 || frame.curvature.is_zero() {
             return if self.tangents < 2 { frame.tangents } else { self.frame.tangents };
         }
         let normal = self.frame.normal;

@@ -40,6 +40,7 @@ pub fn bad_documents() -> Vec<BadDocument> {
         model::mechanisms(),
         model::contacts(),
         model::balls(),
+        model::cylinders(),
         loading::stages(),
         loading::motions(),
         loading::ends(),

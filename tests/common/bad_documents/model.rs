@@ -112,6 +112,58 @@ pub fn balls() -> Vec<BadDocument> {
     ]
 }
 
+/// The scene in space with the floor replaced by a cylinder; the tip is at (-1.5, 0, 0).
+pub fn cylinders() -> Vec<BadDocument> {
+    let floor = "/model/obstacles/floor";
+    let cylinder = |members: Value| {
+        let mut cylinder = json!({"kind": "cylinder", "point": [-1.5, -2, 0], "axis": [0, 0, 1], "radius": 1});
+        if let (Value::Object(cylinder), Value::Object(members)) = (&mut cylinder, members) {
+            cylinder.extend(members);
+        }
+        cylinder
+    };
+    let in_space = |members: Value| {
+        vec![
+            ("/model/dimension", json!(3)),
+            ("/model/nodes", json!({"pin": [0, 1, 0], "tip": [-1.5, 0, 0]})),
+            ("/model/supports/pin", json!(["x", "y", "z"])),
+            ("/model/stages/0/forces", json!({"tip": [1, 0, 0]})),
+            (floor, cylinder(members)),
+        ]
+    };
+    let wrong = |name, members: Value, pointer, detail| elsewhere(name, &in_space(members), pointer, detail);
+    vec![
+        elsewhere(
+            "cylinder in the plane",
+            &[(floor, cylinder(json!({})))],
+            "/model/obstacles/floor/kind",
+            "in the plane take a ball",
+        ),
+        wrong(
+            "cylinder without an axis",
+            json!({"axis": [0, 0, 0]}),
+            "/model/obstacles/floor/axis",
+            "the axis is zero",
+        ),
+        wrong("short axis", json!({"axis": [0, 1]}), "/model/obstacles/floor/axis", "found 2 numbers; 3 are expected"),
+        wrong("cylinder of no radius", json!({"radius": 0}), "/model/obstacles/floor/radius", "above 0"),
+        wrong(
+            "node in a cylinder",
+            json!({"radius": 3}),
+            "/model/contacts/0",
+            "inside the cylinder `floor` at the start",
+        ),
+        wrong("node out of a pipe", json!({"side": "inside"}), "/model/contacts/0", "outside the cylinder `floor`"),
+        wrong(
+            "node on the axis",
+            json!({"point": [-1.5, 0, 7], "side": "inside"}),
+            "/model/contacts/0",
+            "move it off the axis",
+        ),
+        wrong("cylinder with a centre", json!({"center": [0, 0, 0]}), "/model/obstacles/floor/center", "unknown"),
+    ]
+}
+
 pub fn sizes() -> Vec<BadDocument> {
     let named = |count: usize, value: Value| {
         Value::Object((0..count).map(|index| (format!("n{index}"), value.clone())).collect())

@@ -224,6 +224,12 @@ class Model:
         """Adds a circle or sphere as obstacle; nodes stay `"outside"` or `"inside"` of it."""
         return self._obstacle(name, {"kind": "ball", "center": plain(center), "radius": plain(radius), "side": side})
 
+    def cylinder(self, name: str, point: Vector, axis: Vector, radius: float, side: str = "outside") -> str:
+        """Adds a circular cylinder in space about the line through a point along an axis; nodes stay `"outside"` or
+        `"inside"` of it."""
+        obstacle = {"kind": "cylinder", "point": plain(point), "axis": plain(axis), "radius": plain(radius), "side": side}
+        return self._obstacle(name, obstacle)
+
     def polyline(
         self,
         name: str,

@@ -223,18 +223,19 @@ impl<'a> ReducedUnknowns<'a> {
             Standing::OnCone { direction } => {
                 let friction = self.loading.contacts[contact].friction;
                 along[0] = (*direction, friction.slack_form(&frame.normal, direction));
-                self.turning.push((
-                    first,
-                    first,
-                    -frame.curvature * normal_reaction * friction.force_direction_squared(),
-                ));
+                let turning = -frame.curvature_along(direction) * normal_reaction;
+                self.turning.push((first, first, turning * friction.force_direction_squared()));
                 self.slips.push(Slip { contact, direction: *direction });
                 1
             }
             Standing::Settled(Mode::Slip { .. }) => {
                 for (k, tangent) in frame.tangents.iter().enumerate().take(dimension - 1) {
                     along[k] = (*tangent, *tangent);
-                    self.turning.push((first + k, first + k, -frame.curvature * normal_reaction));
+                    self.turning.push((first + k, first + k, -frame.curvature_along(tangent) * normal_reaction));
+                }
+                let across = -frame.curvature_across(&frame.tangents[0], &frame.tangents[1]) * normal_reaction;
+                if across != 0.0 {
+                    self.turning.extend([(first, first + 1, across), (first + 1, first, across)]);
                 }
                 dimension - 1
             }

@@ -115,7 +115,7 @@ impl<'a> Equations<'a> {
             Standing::Cornered { .. } => return None,
         };
         add_column(&along, &data.friction.slack_form(&frame.normal, &along));
-        let turning = -frame.curvature * self.state.reactions[contact].normal;
+        let turning = -frame.curvature_along(&along) * self.state.reactions[contact].normal;
         if turning != 0.0 {
             self.turning.push((column, turning * data.friction.force_direction_squared()));
         }

@@ -100,15 +100,15 @@ impl Changeable {
     /// reactions.
     pub fn take_reaction_apart(&self, loading: Loading<'_>, state: &State, rate: &mut Rate) {
         let frame = &self.frames[0];
-        if frame.curvature == 0.0 || self.contacts.len() > 1 {
+        if frame.curvature.is_zero() || self.contacts.len() > 1 {
             return;
         }
         let motion = loading.relative_rate(self.contacts[0], state, rate);
-        let slid = add(&motion, -dot(&motion, &frame.normal), &frame.normal);
-        let across = frame.curvature * dot(&self.reaction.tangential, &slid);
+        let turned = frame.normal_change(&motion);
+        let across = dot(&self.reaction.tangential, &turned);
         let reaction = &mut rate.reactions[self.contacts[0]];
         reaction.normal += across;
-        reaction.tangential = add(&reaction.tangential, -frame.curvature * self.reaction.normal, &slid);
+        reaction.tangential = add(&reaction.tangential, -self.reaction.normal, &turned);
         reaction.tangential = add(&reaction.tangential, -across, &frame.normal);
     }
 
@@ -139,7 +139,7 @@ impl Changeable {
         let normal = dot(&force, &frame.normal);
         rate.reactions[self.contacts[0]] = Reaction::default();
         let mut tangential = add(&force, -normal, &frame.normal);
-        if frame.curvature != 0.0 {
+        if !frame.curvature.is_zero() {
             // The normal reaction turns with the position on the obstacle.
             let motion = loading.relative_rate(*contact, state, rate);
             let pressed = dot(&self.force, &frame.normal);
@@ -196,7 +196,8 @@ impl Changeable {
                 // μ ṙ_n + d·ṙ_t; the reaction turns with the position on a curved obstacle.
                 let mut slack = forms.force_rate(self, &friction.slack_form(&frame.normal, &direction));
                 let (column, _) = self.velocities[0];
-                slack[column] -= frame.curvature * self.reaction.normal * friction.force_direction_squared();
+                let curvature = frame.curvature_along(&direction);
+                slack[column] -= curvature * self.reaction.normal * friction.force_direction_squared();
                 let slack = forms.force(slack);
                 (Entity::complementary(slack, along), vec![single(Mode::Stick), single(Mode::Slip { direction })])
             }
@@ -310,8 +311,8 @@ impl Changeable {
         let (frame, tangent) = (&self.frames[place], self.frames[place].tangents[0]);
         let across = [-ray[1], ray[0], 0.0];
         let mut off_ray = forms.force_rate(self, &across);
-        if frame.curvature != 0.0 {
-            let turn = frame.curvature * dot(&self.force, ray);
+        if !frame.curvature.is_zero() {
+            let turn = frame.curvature_along(&tangent) * dot(&self.force, ray);
             // The ray turns clockwise as the node moves along the tangent of a convex obstacle.
             for (column, direction) in &self.velocities {
                 off_ray[*column] += turn * dot(direction, &tangent);

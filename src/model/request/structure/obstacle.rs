@@ -26,6 +26,19 @@ pub enum Obstacle {
         #[serde(default)]
         side: Side,
     },
+    /// A circular cylinder without ends, in 3D.
+    Cylinder {
+        /// A point on the axis (length, 3 coordinates).
+        point: Vec<f64>,
+        /// Along the axis (3 components), of any length but 0 and of either sense.
+        axis: Vec<f64>,
+        /// Length, positive.
+        #[cfg_attr(feature = "server", schema(exclusive_minimum = 0.0))]
+        radius: f64,
+        /// Where nodes are free, `outside` when absent.
+        #[serde(default)]
+        side: Side,
+    },
     /// A smooth curve through points, or a polygon with rounded corners, in the plane.
     Polyline(Polyline),
 }
@@ -49,6 +62,20 @@ impl Obstacle {
         Self::Ball { center: center.into(), radius, side }
     }
 
+    /// A circular cylinder in 3D about the line through a point (length) along an axis, of positive radius (length); nodes
+    /// stay on the given side of it.
+    ///
+    /// ```
+    /// use arcslip::{Obstacle, Side};
+    ///
+    /// let drum = Obstacle::cylinder([0.0, 0.0, 0.0], [0.0, 0.0, 1.0], 0.5, Side::Outside);
+    /// let pipe = Obstacle::cylinder([0.0, 0.0, 0.0], [0.0, 0.0, 1.0], 0.5, Side::Inside);
+    /// assert_ne!(drum, pipe);
+    /// ```
+    pub fn cylinder(point: impl Into<Vec<f64>>, axis: impl Into<Vec<f64>>, radius: f64, side: Side) -> Self {
+        Self::Cylinder { point: point.into(), axis: axis.into(), radius, side }
+    }
+
     /// The smooth curve through points (length) in the plane, open, free to the left of its direction.
     ///
     /// ```
@@ -65,7 +92,7 @@ impl Obstacle {
     }
 }
 
-/// On which side of a ball or a closed polyline the nodes are free.
+/// On which side of a ball, a cylinder or a closed polyline the nodes are free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
@@ -75,6 +102,16 @@ pub enum Side {
     Outside,
     /// Nodes stay in it.
     Inside,
+}
+
+impl Side {
+    /// 1 outside, -1 inside: the sense of the outward normal that points into the free side.
+    pub(crate) fn sign(self) -> f64 {
+        match self {
+            Self::Outside => 1.0,
+            Self::Inside => -1.0,
+        }
+    }
 }
 
 /// A node, or the nodes of a surface, against an obstacle or the surface of another body.

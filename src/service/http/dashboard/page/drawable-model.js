@@ -2,7 +2,7 @@
 
 import { SOLIDS } from "./structure-solids.js";
 
-const KINDS = ["plane", "ball", "polyline"];
+const KINDS = ["plane", "ball", "cylinder", "polyline"];
 /** The most sentences; the others are counted. */
 const SENTENCES = 8;
 
@@ -116,13 +116,16 @@ function counterpartProblem({ obstacle, against }, obstacles, surfaces) {
 }
 
 function obstacleProblem(reading, obstacle) {
-  if (!KINDS.includes(obstacle?.kind)) return "its kind has to be plane, ball or polyline";
+  if (!KINDS.includes(obstacle?.kind)) return "its kind has to be plane, ball, cylinder or polyline";
   if (obstacle.kind === "ball") {
     return obstacle.radius > 0 ? reading.vectorOr(obstacle.center) : "its radius has to be a number above 0";
   }
   if (obstacle.kind === "polyline") return polylineProblem(reading, obstacle);
-  const isDirection = reading.isVector(obstacle.normal) && obstacle.normal.some((value) => value !== 0);
-  return isDirection ? reading.vectorOr(obstacle.point) : "its normal has to be a direction";
+  if (obstacle.kind === "cylinder" && reading.dimension !== 3) return "a cylinder is an obstacle in space";
+  if (obstacle.kind === "cylinder" && !(obstacle.radius > 0)) return "its radius has to be a number above 0";
+  const member = obstacle.kind === "cylinder" ? "axis" : "normal";
+  const isDirection = reading.isVector(obstacle[member]) && obstacle[member].some((value) => value !== 0);
+  return isDirection ? reading.vectorOr(obstacle.point) : `its ${member} has to be a direction`;
 }
 
 function polylineProblem(reading, { points, closed, rounding }) {

@@ -33,13 +33,21 @@ export function acting(model, increment, reached, member) {
   return sums;
 }
 
+/** A place relative to the centre of a ball, or to the axis of a cylinder and perpendicular to it. */
+export function fromMiddle(obstacle, place, moved = []) {
+  if (obstacle.kind === "ball") return plus(place, plus(obstacle.center, moved), -1);
+  const axis = unit(obstacle.axis);
+  const from = plus(place, plus(obstacle.point, moved), -1);
+  return plus(from, axis, -dot(from, axis));
+}
+
 /** The normal of an obstacle into the free side at a position, and the tangents to which the reactions refer. */
 export function frame(obstacle, place, moved = []) {
   let normal;
   if (obstacle.kind === "plane") normal = unit(obstacle.normal);
   else if (obstacle.kind === "polyline") normal = normalOfCurve(obstacle, plus(place, moved, -1));
   else {
-    const out = unit(plus(place, plus(obstacle.center, moved), -1));
+    const out = unit(fromMiddle(obstacle, place, moved));
     normal = obstacle.side === "inside" ? times(out, -1) : out;
   }
   if (normal.length === 2) return { normal, tangents: [[normal[1], -normal[0]]] };

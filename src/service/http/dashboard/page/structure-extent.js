@@ -1,10 +1,10 @@
 // The extent of a structure and of its picture: what has been shown so far counts, so that the picture does not jump from
 // increment to increment.
 
-import { vector } from "./geometry.js";
+import { fromMiddle, vector } from "./geometry.js";
 
-const { plus, dot, length } = vector;
-/** Times the structure's size up to which a ball is in the picture whole. */
+const { plus, dot, length, unit } = vector;
+/** Times the structure's size up to which a ball is in the picture whole, and a cylinder all round. */
 const NOT_MUCH = 3;
 
 export class StructureExtent {
@@ -17,11 +17,13 @@ export class StructureExtent {
     this.feet = new Map();
     this.widen(nodes);
     const ofNodes = this.diagonal();
-    this.isWhole = (obstacle) => obstacle.kind === "ball" && (ofNodes === 0 || obstacle.radius < NOT_MUCH * ofNodes);
-    for (const obstacle of Object.values(model.obstacles ?? {})) {
-      if (this.isWhole(obstacle)) {
-        this.widen([-1, 1].map((side) => obstacle.center.map((value) => value + side * obstacle.radius)));
-      }
+    this.isWhole = ({ radius }) => radius !== undefined && (ofNodes === 0 || radius < NOT_MUCH * ofNodes);
+    const { middle } = this;
+    for (const obstacle of Object.values(model.obstacles ?? {}).filter(this.isWhole)) {
+      const center = plus(middle, fromMiddle(obstacle, middle), -1);
+      // A cylinder reaches less far towards its axis.
+      const reach = (axis) => obstacle.radius * Math.sqrt(1 - (obstacle.axis ? unit(obstacle.axis)[axis] ** 2 : 0));
+      this.widen([-1, 1].map((side) => center.map((value, axis) => value + side * reach(axis))));
     }
   }
 

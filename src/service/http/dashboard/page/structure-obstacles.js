@@ -1,7 +1,7 @@
-// Obstacles in the picture of a structure: of planes and of large balls the part near the feet, that is, near the nodes that may
+// Obstacles in the picture of a structure: of planes and of large balls and cylinders the part near the feet, that is, near the nodes that may
 // touch them.
 
-import { frame, vector } from "./geometry.js";
+import { frame, fromMiddle, vector } from "./geometry.js";
 import { planeCurve } from "./plane-curve.js";
 import { fromSheet } from "./plot-style.js";
 import { components } from "./units.js";
@@ -10,6 +10,8 @@ const { plus, unit, dot, length } = vector;
 /** Corners of the polygon that represents a circle, and of each side of the part of an obstacle. */
 const ROUND = 48;
 const SIDE = 16;
+/** Straight lines of a cylinder. */
+const RULES = 12;
 /** How far a part goes beyond the feet, how deep it is drawn in a plane, and half its side where no node may touch it: as parts
  *  of the extent. */
 const BEYOND = 0.2;
@@ -55,7 +57,8 @@ export class ObstacleDrawing {
   /** Draws an obstacle; answers a place on it. */
   shape(name, obstacle) {
     if (obstacle.kind === "polyline") return this.curve(name, obstacle);
-    return this.extent.isWhole(obstacle) ? this.ball(name, obstacle) : this.part(name, obstacle);
+    if (!this.extent.isWhole(obstacle)) return this.part(name, obstacle);
+    return obstacle.kind === "ball" ? this.ball(name, obstacle) : this.cylinder(name, obstacle);
   }
 
   /** The nodes that may touch an obstacle, where they were and where they are. */
@@ -136,34 +139,57 @@ export class ObstacleDrawing {
   ball(name, obstacle) {
     const { traces, model: { dimension } } = this;
     const center = plus(obstacle.center, this.moved.get(name) ?? []);
-    const axes = dimension === 2 ? [[0, 1]] : [[0, 1], [1, 2], [0, 2]];
-    for (const [first, second] of axes) {
-      const round = [...Array(ROUND + 1).keys()].map((step) => {
-        const angle = (2 * Math.PI * step) / ROUND;
-        const place = [...center];
-        place[first] += obstacle.radius * Math.cos(angle);
-        place[second] += obstacle.radius * Math.sin(angle);
-        return place;
-      });
+    const axes = center.map((_, axis) => center.map((_, other) => (axis === other ? 1 : 0)));
+    const pairs = dimension === 2 ? [[0, 1]] : [[0, 1], [1, 2], [0, 2]];
+    for (const pair of pairs) {
+      const round = circle(center, obstacle.radius, pair.map((axis) => axes[axis]));
       traces.lines("obstacle", [round], this.line, name);
       if (dimension === 2 && obstacle.side !== "inside") traces.area(round, fromSheet("--ground"));
     }
     return center;
   }
+
+  /** A cylinder all round, as far along as its feet need; answers the middle of its axis. */
+  cylinder(name, obstacle) {
+    const { traces, extent } = this;
+    const axis = unit(obstacle.axis);
+    const moved = this.moved.get(name) ?? [];
+    const base = plus(obstacle.point, moved);
+    const feet = this.feet(name);
+    const along = (feet.length ? feet : [extent.middle]).map((place) => [dot(plus(place, base, -1), axis)]);
+    const [[low, high]] = extent.stand(name, along);
+    const beyond = (feet.length ? BEYOND : ALONE) * extent.size;
+    const ends = [low - beyond, high + beyond].map((place) => plus(base, axis, place));
+    const across = frame({ kind: "plane", normal: axis }, base).tangents;
+    const rounds = ends.map((center) => circle(center, obstacle.radius, across));
+    const rules = [...Array(RULES).keys()].map((number) => rounds.map((round) => round[(number * ROUND) / RULES]));
+    traces.lines("obstacle", [...rounds, ...rules], this.line, name);
+    return plus(ends[0], axis, (high - low) / 2 + beyond);
+  }
+}
+
+/** A circle about a centre, as a closed polygon, in the plane of two unit vectors. */
+function circle(center, radius, [first, second]) {
+  return [...Array(ROUND + 1).keys()].map((step) => {
+    const angle = (2 * Math.PI * step) / ROUND;
+    return plus(plus(center, first, radius * Math.cos(angle)), second, radius * Math.sin(angle));
+  });
 }
 
 /** Coordinates along the surface of an obstacle: `along(place)` of a position, `on(coordinates)` the position that has them, and
  *  `normalAt(place)`. */
 function surfaceOf(obstacle, near, moved) {
   const isPlane = obstacle.kind === "plane";
-  const center = isPlane ? null : plus(obstacle.center, moved);
-  const onBall = (place) => plus(center, unit(plus(place, center, -1)), obstacle.radius);
-  const origin = isPlane ? plus(obstacle.point, moved) : onBall(near);
+  const onRound = (place) => {
+    const from = fromMiddle(obstacle, place, moved);
+    return plus(plus(place, from, -1), unit(from), obstacle.radius);
+  };
+  const origin = isPlane ? plus(obstacle.point, moved) : onRound(near);
   const { tangents } = frame(obstacle, origin, moved);
   const flat = (coordinates) => tangents.reduce((sum, tangent, axis) => plus(sum, tangent, coordinates[axis]), origin);
   return {
     along: (place) => tangents.map((tangent) => dot(plus(place, origin, -1), tangent)),
-    on: (coordinates) => (isPlane ? flat(coordinates) : onBall(flat(coordinates))),
+    on: (coordinates) => (isPlane ? flat(coordinates) : onRound(flat(coordinates))),
     normalAt: (place) => frame(obstacle, place, moved).normal,
   };
 }
