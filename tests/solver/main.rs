@@ -37,6 +37,7 @@ mod keep_all;
 mod lift_offs;
 mod limit_curves;
 mod limits_near_critical_friction;
+mod line_loads;
 mod mac_mpec;
 mod many_contacts;
 mod measure;

@@ -1,4 +1,5 @@
-//! The loads of stages on solids: consistent nodal forces of body forces and dead tractions.
+//! The loads of stages on solids and on the sides of bars and beams: consistent nodal forces of body forces and dead
+//! tractions.
 //!
 //! ```text
 //! f_a = V_a b,   V_a = ∫ N_a dV over the solids of a material;      f_a = A_a t,   A_a = ∫ N_a dA over a surface
@@ -12,9 +13,9 @@ use crate::continuation::scene::elements::ElementBuilder;
 use crate::mechanics::structure::element_list::ElementList;
 use crate::mechanics::structure::elements::solid::any::each_traction_force;
 use crate::mechanics::structure::elements::solid::pressure_face::push_pressure_face;
-use crate::model::request::{Element, Model, Stage};
-use crate::model::solids::data;
-use crate::model::solids::faces::{FaceMatch, SolidFace, surface_faces};
+use crate::model::request::{Model, Stage};
+use crate::model::solids::data::{self, LoadedFace};
+use crate::model::solids::faces::surface_faces;
 use indexmap::IndexSet;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -55,11 +56,9 @@ impl<'a> LoadedSolids<'a> {
         if !loaded.areas.is_empty() {
             for (name, faces) in model.surfaces.keys().zip(surface_faces(model)) {
                 let Some(shares) = loaded.areas.get_mut(name.as_str()) else { continue };
-                for face in faces {
-                    if let FaceMatch::Face(face) = face {
-                        add_areas(model, &face, shares);
-                    }
-                }
+                faces.iter().filter_map(|face| data::loaded_face(model, face, 1.0)).for_each(|face| {
+                    add_areas(&face, shares);
+                });
             }
         }
         loaded
@@ -115,25 +114,18 @@ pub(super) fn add_pressure_faces(model: &Model, pressed: &IndexSet<&str>, length
     }
     for (name, faces) in model.surfaces.keys().zip(surface_faces(model)) {
         let Some(place) = pressed.get_index_of(name.as_str()) else { continue };
-        for face in faces {
-            let FaceMatch::Face(face) = face else { continue };
-            let Some((_, solid)) = model.elements.get(face.element).and_then(Element::solid) else { continue };
-            let idealisation = data::idealisation(solid, model.dimension, length);
-            let places: Vec<&[f64]> = face.nodes.iter().map(|node| model.nodes[*node].as_slice()).collect();
-            let positions = data::positions(&places, idealisation, length);
-            let auxiliary = model.nodes.len() + place;
-            push_pressure_face(elements, (face.kind, idealisation), &face.nodes, &positions, auxiliary);
+        let auxiliary = model.nodes.len() + place;
+        for LoadedFace { kind, idealisation, nodes, positions } in
+            faces.iter().filter_map(|face| data::loaded_face(model, face, length))
+        {
+            push_pressure_face(elements, (kind, idealisation), &nodes, &positions, auxiliary);
         }
     }
 }
 
 /// Adds the areas of the nodes of a face.
-fn add_areas(model: &Model, face: &SolidFace, shares: &mut NodalShares) {
-    let Some((_, solid)) = model.elements.get(face.element).and_then(Element::solid) else { return };
-    let idealisation = data::idealisation(solid, model.dimension, 1.0);
-    let places: Vec<&[f64]> = face.nodes.iter().map(|node| model.nodes[*node].as_slice()).collect();
-    let positions = data::positions(&places, idealisation, 1.0);
-    each_traction_force(face.kind, &positions, idealisation, UNIT, &mut |place, [area, ..]| {
+fn add_areas(face: &LoadedFace, shares: &mut NodalShares) {
+    each_traction_force(face.kind, &face.positions, face.idealisation, UNIT, &mut |place, [area, ..]| {
         *shares.entry(face.nodes[place]).or_default() += area;
     });
 }

@@ -11,7 +11,6 @@ use crate::model::input::names::{quoted, suggestion};
 use crate::model::request::{ElasticConstants, Element, Material, PlaneCondition, Solid, Stage, Surface};
 use crate::model::solids::data;
 use crate::model::solids::faces::{FaceMatch, surface_faces};
-use std::collections::HashSet;
 
 pub(super) fn materials(scope: &Scope, mistakes: &mut Mistakes) {
     let at = scope.at.member("materials");
@@ -204,19 +203,17 @@ pub(super) fn loads(scope: &Scope, stage: &Stage, at: &DocumentPlace, mistakes: 
             loaded |= solids.filter(|(_, solid)| solid.material == *name).any(|(_, solid)| moves(&solid.nodes, force));
         }
     }
-    let sides =
-        if stage.tractions.is_empty() && stage.pressures.is_empty() { HashSet::new() } else { sides_of_bars(scope) };
     let at_tractions = at.member("tractions");
     for (name, traction) in &stage.tractions {
         let at = at_tractions.member(name);
-        let surface = known_surface(scope, &sides, name, &at, mistakes);
+        let surface = known_surface(scope, name, &at, mistakes);
         let sane = numbers::vector(traction, dimension, &at, mistakes);
         loaded |= sane && surface.is_some_and(|surface| surface.faces.iter().any(|face| moves(face, traction)));
     }
     let at_pressures = at.member("pressures");
     for (name, pressure) in &stage.pressures {
         let at = at_pressures.member(name);
-        let surface = known_surface(scope, &sides, name, &at, mistakes);
+        let surface = known_surface(scope, name, &at, mistakes);
         let sane = numbers::number(*pressure, &at, mistakes);
         // The surface may turn: it presses along every axis.
         let pressed = vec![*pressure; dimension];
@@ -225,16 +222,8 @@ pub(super) fn loads(scope: &Scope, stage: &Stage, at: &DocumentPlace, mistakes: 
     loaded
 }
 
-/// Names of surfaces with faces that are sides of bars or beams.
-fn sides_of_bars<'a>(scope: &Scope<'a>) -> HashSet<&'a str> {
-    let surfaces = scope.model.surfaces.keys().zip(surface_faces(scope.model));
-    let has_side = |faces: &[FaceMatch]| faces.iter().any(|face| matches!(face, FaceMatch::Side(_)));
-    surfaces.filter(|(_, faces)| has_side(faces)).map(|(name, _)| name.as_str()).collect()
-}
-
 fn known_surface<'a>(
     scope: &Scope<'a>,
-    sides: &HashSet<&str>,
     name: &str,
     at: &DocumentPlace,
     mistakes: &mut Mistakes,
@@ -244,11 +233,6 @@ fn known_surface<'a>(
         mistakes.add(at, || {
             let known = suggestion(name, scope.model.surfaces.keys().map(String::as_str));
             format!("there is no surface {}{known}", quoted(name))
-        });
-    }
-    if sides.contains(name) {
-        mistakes.add(at, || {
-            format!("{} has faces that are sides of bars or beams; only solids take such loads", quoted(name))
         });
     }
     surface

@@ -1,12 +1,14 @@
-//! What a model's solids are made of, in the terms of mechanics.
+//! What a model's solids are made of, and the faces that loads act on, in the terms of mechanics.
 
 use crate::mechanics::structure::elements::materials::linear_elastic::LinearElastic;
 use crate::mechanics::structure::elements::materials::mooney_rivlin::MooneyRivlin;
 use crate::mechanics::structure::elements::materials::neo_hookean::NeoHookean;
 use crate::mechanics::structure::elements::materials::saint_venant_kirchhoff::SaintVenantKirchhoff;
 use crate::mechanics::structure::elements::materials::{self, ElasticModuli, MaterialError};
+use crate::mechanics::structure::elements::solid::shapes::faces::FaceKind;
 use crate::mechanics::structure::elements::solid::shapes::kind::Idealisation;
-use crate::model::request::{ElasticConstants, Material, PlaneCondition, Solid};
+use crate::model::request::{ElasticConstants, Element, Material, Model, PlaneCondition, Solid};
+use crate::model::solids::faces::FaceMatch;
 use std::sync::Arc;
 
 /// The material with stresses over `unit`.
@@ -47,4 +49,32 @@ pub(crate) fn positions(given: &[&[f64]], idealisation: Idealisation, unit: f64)
         (place.get(axis).copied().unwrap_or(0.0) - from) / unit
     };
     given.iter().map(|place| std::array::from_fn(|axis| component(place, axis))).collect()
+}
+
+/// A face that tractions and pressures load, its normal out of the body.
+pub(crate) struct LoadedFace {
+    pub kind: FaceKind,
+    pub idealisation: Idealisation,
+    pub nodes: Vec<usize>,
+    /// See [`positions`].
+    pub positions: Vec<[f64; 3]>,
+}
+
+/// A face of a surface with lengths over `unit`; `None` where it is no face of a body. A side of a bar or a beam is a face
+/// of unit thickness, so that loads on it are forces per length.
+pub(crate) fn loaded_face(model: &Model, face: &FaceMatch, unit: f64) -> Option<LoadedFace> {
+    let (kind, idealisation, nodes) = match face {
+        FaceMatch::Face(face) => {
+            let (_, solid) = model.elements.get(face.element).and_then(Element::solid)?;
+            (face.kind, idealisation(solid, model.dimension, unit), face.nodes.clone())
+        }
+        FaceMatch::Side([first, last]) => {
+            // The free side is to the left of the order, outside of a solid to the right.
+            (FaceKind::Segment2, Idealisation::PlaneStrain { thickness: 1.0 / unit }, vec![*last, *first])
+        }
+        FaceMatch::None | FaceMatch::Inside => return None,
+    };
+    let places: Vec<&[f64]> = nodes.iter().map(|node| model.nodes[*node].as_slice()).collect();
+    let positions = positions(&places, idealisation, unit);
+    Some(LoadedFace { kind, idealisation, nodes, positions })
 }

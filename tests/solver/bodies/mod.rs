@@ -5,6 +5,7 @@ mod bad_bodies;
 mod blocks;
 mod hertz;
 mod random_pairs;
+mod tube;
 
 use serde_json::{Map, Value, json};
 

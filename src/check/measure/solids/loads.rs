@@ -47,7 +47,6 @@ impl<'a> SolidShares<'a> {
             for (name, faces) in model.surfaces.keys().zip(surface_faces(model)) {
                 let Some(areas) = shares.areas.get_mut(name.as_str()) else { continue };
                 for face in faces {
-                    let FaceMatch::Face(face) = face else { continue };
                     for (node, area) in MeasuredFace::new(model, &face).iter().flat_map(MeasuredFace::areas) {
                         *areas.entry(node).or_default() += area;
                     }
@@ -69,7 +68,7 @@ impl<'a> SolidShares<'a> {
     }
 }
 
-/// A face of a solid, its nodes numbered.
+/// A face of a solid, or a side of a bar or a beam, its nodes numbered.
 #[derive(Debug, Clone)]
 pub struct MeasuredFace {
     placed: PlacedSolid,
@@ -78,7 +77,23 @@ pub struct MeasuredFace {
 }
 
 impl MeasuredFace {
-    fn new(model: &Model, face: &SolidFace) -> Option<Self> {
+    fn new(model: &Model, face: &FaceMatch) -> Option<Self> {
+        match face {
+            FaceMatch::Face(face) => Self::of_solid(model, face),
+            FaceMatch::Side(nodes) => Some(Self::side(model, *nodes)),
+            FaceMatch::None | FaceMatch::Inside => None,
+        }
+    }
+
+    /// The side to the left of the order of the nodes, of unit thickness: the body is to the right.
+    fn side(model: &Model, [first, last]: [usize; 2]) -> Self {
+        let origin = padded(&model.nodes[last]);
+        let nodes = vec![last, first];
+        let places = nodes.iter().map(|node| padded(&model.nodes[*node]) - origin).collect();
+        Self { placed: PlacedSolid { origin, nodes, places, plane: PlaneOf::Strain, thickness: 1.0 }, kind: None }
+    }
+
+    fn of_solid(model: &Model, face: &SolidFace) -> Option<Self> {
         let (_, solid) = model.elements.get(face.element).and_then(Element::solid)?;
         let solid = PlacedSolid::new(model, solid)?;
         let places = face.nodes.iter().map(|node| padded(&model.nodes[*node]) - solid.origin).collect();
@@ -121,11 +136,7 @@ pub fn pressed_surfaces(model: &Model) -> Vec<(&str, Vec<MeasuredFace>)> {
     if named.is_empty() {
         return Vec::new();
     }
-    let faces = |faces: Vec<FaceMatch>| {
-        let one =
-            |face: &FaceMatch| if let FaceMatch::Face(face) = face { MeasuredFace::new(model, face) } else { None };
-        faces.iter().filter_map(one).collect()
-    };
+    let faces = |faces: Vec<FaceMatch>| faces.iter().filter_map(|face| MeasuredFace::new(model, face)).collect();
     let all = model.surfaces.keys().zip(surface_faces(model)).filter(|(name, _)| named.contains(name.as_str()));
     all.map(|(name, own)| (name.as_str(), faces(own))).collect()
 }

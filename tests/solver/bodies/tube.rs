@@ -1,0 +1,91 @@
+//! A tube under pressure from outside, a ring of beams: it buckles, its opposite sides meet at one point, then along a
+//! line.
+//!
+//! J. E. Flaherty, J. B. Keller, S. I. Rubinow, SIAM J. Appl. Math. 23 (1972) 446, doi:10.1137/0123047: of an inextensible
+//! ring with EI = 1 and radius 1 the sides meet at the pressure 5.247 and along a line from 10.34 on; it buckles at 3
+//! (M. Lévy, 1884).
+
+use crate::common::paths::{close, judged, request};
+use arcslip::model::JobRequest;
+use arcslip::result::increment::{Increment, PointKind, Status};
+use arcslip::result::stop_reason::StopReason;
+use serde_json::{Map, Value, json};
+use std::f64::consts::TAU;
+
+/// A ring of so many beams, oval by a part of its radius, under a pressure up to a bound. Its upper and lower parts, inside,
+/// are surfaces that may touch.
+fn tube(count: usize, oval: f64, friction: f64, until: f64) -> JobRequest {
+    let name = |k: usize| format!("n{}", k % count);
+    let place = |k: usize| {
+        let angle = TAU * k as f64 / count as f64;
+        let radius = 1.0 + oval * (2.0 * angle).cos();
+        [radius * angle.cos(), radius * angle.sin()]
+    };
+    let nodes: Map<String, Value> = (0..count).map(|k| (name(k), json!(place(k)))).collect();
+    let beam = |k: usize| json!({"kind": "beam", "nodes": [name(k), name(k + 1)], "axial_stiffness": 1e6, "bending_stiffness": 1.0});
+    // Counter-clockwise the inside is on the left.
+    let inside = |from: usize, to: usize| (from..to).map(|k| json!([name(k), name(k + 1)])).collect::<Vec<_>>();
+    let outside: Vec<Value> = (0..count).map(|k| json!([name(k + 1), name(k)])).collect();
+    let eighth = count / 8;
+    let text = json!({
+        "model": {
+            "dimension": 2, "nodes": nodes, "elements": (0..count).map(beam).collect::<Vec<_>>(),
+            // On the axes of symmetry; the upper side may move to a side over the lower one.
+            "supports": {name(0): ["y", "rz"], name(4 * eighth): ["y", "rz"], name(6 * eighth): ["x", "rz"]},
+            "surfaces": {"upper": {"faces": inside(eighth, 3 * eighth)}, "lower": {"faces": inside(5 * eighth, 7 * eighth)},
+                         "outside": {"faces": outside}},
+            "contacts": [{"surface": "upper", "against": "lower", "friction": friction}],
+            "stages": [{"name": "press", "pressures": {"outside": 1}, "until": {"load_above": until}}],
+        },
+        "analysis": {"arc_length": {"initial": 1, "max": 50}, "record": {"elements": "none"}},
+    });
+    request(&text.to_string())
+}
+
+fn path(request: &JobRequest) -> Vec<Increment> {
+    let traced = judged(request);
+    assert_eq!(traced.report.stop_reason, StopReason::StagesCompleted);
+    for (increment, errors) in traced.increments.iter().zip(&traced.errors) {
+        assert!(errors.largest_of_state() < 1e-9 && errors.energy < 1e-6, "increment {}: {errors:?}", increment.index);
+    }
+    traced.increments
+}
+
+/// The limit of results whose errors fall with a power of the length of elements, each half as long as before.
+fn extrapolated(coarse: f64, fine: f64, order: i32) -> f64 {
+    fine + (fine - coarse) / (2.0_f64.powi(order) - 1.0)
+}
+
+#[test]
+fn a_tube_under_pressure_buckles() {
+    let [coarse, fine] = [40, 80].map(|count| {
+        let increments = path(&tube(count, 0.0, 0.0, 3.5));
+        let found = increments.iter().find(|increment| increment.point.kind == PointKind::SmoothBifurcation);
+        found.expect("a bifurcation").load_factor
+    });
+    close(extrapolated(coarse, fine, 2), 3.0, 1e-4, "load of the bifurcation");
+}
+
+#[test]
+fn the_opposite_sides_of_a_tube_meet() {
+    let meetings = [(32, 12.5), (64, 11.5), (128, 11.0)].map(|(count, until)| {
+        let increments = path(&tube(count, 1e-5, 0.3, until));
+        let touching =
+            |increment: &Increment| increment.contacts.iter().filter(|contact| contact.status != Status::Free).count();
+        let changes: Vec<f64> = increments
+            .windows(2)
+            .filter(|pair| touching(&pair[1]) > touching(&pair[0]))
+            .map(|pair| pair[0].load_factor)
+            .collect();
+        println!("{count}: {changes:?}");
+        assert!(changes.len() >= 2, "{count}: {changes:?}");
+        // The path goes on from its event to the next increment.
+        let point = increments.iter().find(|increment| increment.point.kind == PointKind::ContactChange);
+        [point.expect("a contact").load_factor, changes[1]]
+    });
+    let [coarse, fine, finest] = meetings;
+    let once = [extrapolated(coarse[0], fine[0], 2), extrapolated(fine[0], finest[0], 2)];
+    close(extrapolated(once[0], once[1], 4), 5.247, 1e-3, "pressure at which a point meets a point");
+    let once = [extrapolated(coarse[1], fine[1], 1), extrapolated(fine[1], finest[1], 1)];
+    close(extrapolated(once[0], once[1], 2), 10.34, 0.05, "pressure from which a line touches");
+}
