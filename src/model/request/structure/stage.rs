@@ -29,8 +29,8 @@ pub struct Stage {
     /// Surface name to force per undeformed area, which keeps its direction; multiplied by the load factor.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub tractions: IndexMap<String, Vec<f64>>,
-    /// Surface name to pressure (force per deformed area) on it, which follows the surface; above 0 it presses on the solid.
-    /// Multiplied by the load factor.
+    /// Surface name to pressure (force per deformed area; on sides of bars and beams per length) on it, which follows the
+    /// surface; above 0 it presses on the solid, or away from the free side. Multiplied by the load factor.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub pressures: IndexMap<String, f64>,
     /// Obstacle name to translation (length); multiplied by the load factor.
