@@ -3,7 +3,7 @@
 use super::paths::typed;
 use super::random::Numbers;
 use arcslip::model::JobRequest;
-use arcslip::model::request::Obstacle;
+use arcslip::{Obstacle, Polyline, Side};
 use serde_json::{Map, Value, json};
 
 type Vector = [f64; 3];
@@ -120,6 +120,27 @@ pub fn random_corner(seed: u64) -> JobRequest {
 /// The same with cylinders in place of balls, touched at the same points, with axes of any direction; `None` where there is
 /// no ball.
 pub fn random_corner_on_cylinders(seed: u64) -> Option<JobRequest> {
+    on_round(seed, |center, axis, _, radius, side| {
+        Obstacle::cylinder(add(&center, 1.0, &axis).to_vec(), axis.to_vec(), radius, side)
+    })
+}
+
+/// The same with curves through points of a circle, straight across their plane.
+pub fn random_corner_on_curves(seed: u64) -> Option<JobRequest> {
+    on_round(seed, |center, axis, outward, radius, side| {
+        let up = unit(&cross(&axis, &outward));
+        let point = |k: u32| {
+            let angle = std::f64::consts::TAU * f64::from(k) / 24.0;
+            vec![radius * angle.cos(), radius * angle.sin()]
+        };
+        let curve = Polyline { points: (0..24).map(point).collect(), ..Polyline::default() };
+        Obstacle::Polyline(curve.closed(side).in_space(center, outward, up))
+    })
+}
+
+/// With other round obstacles in place of balls, made of the centre, a vector across the outward normal at the node, this
+/// normal, the radius and the free side.
+fn on_round(seed: u64, round: impl Fn(Vector, Vector, Vector, f64, Side) -> Obstacle) -> Option<JobRequest> {
     let mut numbers = Numbers(seed.wrapping_mul(15_485_863).wrapping_add(5));
     let mut request = random_corner(seed);
     let model = &mut request.model;
@@ -128,12 +149,16 @@ pub fn random_corner_on_cylinders(seed: u64) -> Option<JobRequest> {
         let obstacle = &mut model.obstacles[&contact.obstacle];
         let Obstacle::Ball { center, radius, side } = obstacle else { continue };
         let place = &model.nodes[&contact.node];
+        let center: Vector = [center[0], center[1], center[2]];
         let outward = unit(&[0, 1, 2].map(|k| place[k] - center[k]));
         let other = of_size(&mut numbers, 1.0, 1.0);
         let axis = add(&other, -dot(&other, &outward), &outward);
-        let point: Vec<f64> = (0..3).map(|k| center[k] + axis[k]).collect();
-        *obstacle = Obstacle::cylinder(point, axis.to_vec(), *radius, *side);
+        *obstacle = round(center, axis, outward, *radius, *side);
         count += 1;
     }
     (count > 0).then_some(request)
+}
+
+fn cross(a: &Vector, b: &Vector) -> Vector {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

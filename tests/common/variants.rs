@@ -65,6 +65,7 @@ pub fn in_units(mut request: JobRequest, length: f64, force: f64) -> JobRequest 
             Obstacle::Polyline(polyline) => {
                 polyline.points.iter_mut().for_each(|point| scale(point, length));
                 polyline.rounding.iter_mut().for_each(|rounding| *rounding *= length);
+                polyline.section.iter_mut().for_each(|section| scale(&mut section.origin, length));
             }
         }
     }
@@ -114,7 +115,13 @@ pub fn about_axes(mut request: JobRequest, axes: &Axes, shift: [f64; 3]) -> JobR
                 *point = place(point);
                 *axis = turned(axes, axis);
             }
-            Obstacle::Polyline(polyline) => polyline.points.iter_mut().for_each(|point| *point = place(point)),
+            Obstacle::Polyline(polyline) => {
+                if let Some(section) = &mut polyline.section {
+                    section.origin = place(&section.origin);
+                    section.x = turned(axes, &section.x);
+                    section.y = turned(axes, &section.y);
+                }
+            }
         }
     }
     for stage in &mut request.model.stages {

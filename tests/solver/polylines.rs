@@ -114,6 +114,59 @@ fn a_node_slides_over_rounded_corners() {
     }
 }
 
+/// The same across a hump that lies askew in space: the node stays in the plane of its points.
+#[test]
+fn a_node_slides_over_rounded_corners_in_space() {
+    // Along the floor, up, and across; the origin of the points.
+    let axes = [[0.0, 1.0, 0.0], [0.6, 0.0, 0.8], [0.8, 0.0, -0.6]];
+    let origin = [0.3, -0.2, 0.7];
+    let lifted = |x: f64, y: f64| -> [f64; 3] { std::array::from_fn(|k| x * axes[0][k] + y * axes[1][k]) };
+    let placed = |x: f64, y: f64| -> [f64; 3] { std::array::from_fn(|k| origin[k] + lifted(x, y)[k]) };
+    let across = 0.15;
+    let entry = |i: usize, j: usize| {
+        (0..3)
+            .map(|axis| [STIFFNESS[0], STIFFNESS[1], across][axis] * axes[axis][i.min(j)] * axes[axis][i.max(j)])
+            .sum()
+    };
+    let stiffness: Vec<Vec<f64>> = (0..3).map(|i| (0..3).map(|j| entry(i, j)).collect()).collect();
+    let points = CORNERS.map(|corner| corner.to_vec());
+    // Only the part of `y` across `x` counts, and no length.
+    let section = json!({"origin": origin, "x": lifted(2.0, 0.0), "y": lifted(1.5, 3.0)});
+    for method in [Method::Auto, Method::Mpec] {
+        let mut request = typed(json!({
+            "model": {
+                "name": "node over a hump in space", "dimension": 3, "nodes": {"node": placed(-1.8, 0.0)},
+                "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": stiffness}],
+                "obstacles": {"hump": {"kind": "polyline", "points": points, "rounding": ROUNDING, "section": section}},
+                "contacts": [{"node": "node", "obstacle": "hump", "friction": FRICTION}],
+                "stages": [
+                    {"name": "press", "forces": {"node": lifted(0.0, -1.0)}, "until": {"load_above": 1}},
+                    {"name": "push", "forces": {"node": lifted(1.0, 0.0)},
+                        "until": {"displacement": {"node": "node", "component": "y", "above": 4.5}}}
+                ]
+            },
+            "analysis": {"arc_length": {"initial": 0.02, "min": 1e-9, "max": 0.1, "displacement_scale": 1}}
+        }));
+        request.analysis.method = method;
+        let traced = judged(&request);
+        assert_eq!(traced.report.stop_reason, StopReason::StagesCompleted);
+        for (increment, errors) in traced.increments.iter().zip(&traced.errors).filter(|(i, _)| &*i.stage == "push") {
+            let at = place(&request, increment, "node");
+            let local =
+                axes.map(|axis| axis.iter().zip(&at).zip(origin).map(|((a, x), from)| a * (x - from)).sum::<f64>());
+            let what = format!("{method:?}, increment {}, x = {}", increment.index, local[0]);
+            close(local[1], hump(local[0]).0[1], 1e-11, &what);
+            close(local[2], 0.0, 1e-10, &what);
+            if increment.load_factor > FRICTION * (1.0 + 1e-9) {
+                close(increment.load_factor, load(local[0]), 1e-9, &what);
+            }
+            assert!(errors.largest_of_state() < 1e-10 && errors.energy < 1e-6, "{what}: {errors:?}");
+        }
+        let limits = traced.increments.iter().filter(|increment| increment.point.kind == PointKind::SmoothLimit);
+        assert_eq!(limits.count(), 4, "{method:?}");
+    }
+}
+
 fn straight(request: &JobRequest) -> JobRequest {
     let mut request = request.clone();
     for obstacle in request.model.obstacles.values_mut() {
@@ -187,13 +240,19 @@ fn what_is_no_curve_is_refused() {
     refused(of(json!([[0, 0], [0, 0]])), 2, "points[1]", "coincides");
     refused(of(json!([[0, 0], [1, 0], [0, 0.001]])), 2, "points[1]", "turns back");
     refused(of(json!([[0, 0], [1, 0, 2]])), 2, "points[1]", "2 are expected");
-    refused(of(json!([[0, 0], [1, 0]])), 3, "kind", "in the plane");
     let with = |member: &str, value: serde_json::Value| {
         let mut polyline = of(json!([[0, 0], [1, 0], [1, 1], [0, 1]]));
         polyline[member] = value;
         polyline
     };
     refused(with("side", json!("inside")), 2, "side", "left of its direction");
+    let section = |x: [f64; 3], y: [f64; 3]| with("section", json!({"origin": [0, 0, 0], "x": x, "y": y}));
+    let upright = section([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
+    refused(upright, 2, "section", "leave it out");
+    refused(section([0.0; 3], [0.0, 0.0, 1.0]), 3, "section.x", "the direction is zero");
+    refused(section([1.0, 0.0, 0.0], [-2.0, 0.0, 0.0]), 3, "section.y", "along `x`");
+    let short = with("section", json!({"origin": [0, 0], "x": [1, 0, 0], "y": [0, 1, 0]}));
+    refused(short, 3, "section.origin", "3 are expected");
     refused(with("rounding", json!(0.6)), 2, "rounding", "at most 0.5");
     refused(with("rounding", json!(0)), 2, "rounding", "above 0");
     let mut eight = of(json!([[0, 0], [1, 1], [1, 0], [0, 1]]));

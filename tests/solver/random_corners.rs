@@ -1,7 +1,7 @@
 //! Random corners in space: neither order nor units, axes or arc length decide how a path goes and where it ends.
 
 use crate::common::paths::{Traced, judged};
-use crate::common::random_corners::{random_corner, random_corner_on_cylinders};
+use crate::common::random_corners::{random_corner, random_corner_on_curves, random_corner_on_cylinders};
 use crate::common::variants::{Axes, about_axes, in_reverse, in_units, turned};
 use arcslip::model::JobRequest;
 use arcslip::result::increment::PointKind;
@@ -174,6 +174,11 @@ fn neither_order_nor_units_nor_axes_nor_arc_length_decide() {
 #[test]
 fn nor_do_they_decide_on_cylinders() {
     judge_all(random_corner_on_cylinders, 150);
+}
+
+#[test]
+fn nor_do_they_decide_on_curves() {
+    judge_all(random_corner_on_curves, 150);
 }
 
 /// Judges the scenes of all seeds, of which there have to be this many at least.

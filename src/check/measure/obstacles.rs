@@ -32,7 +32,8 @@ enum ObstacleShape {
         radius: f64,
         sign: f64,
     },
-    Polyline(MeasuredCurve),
+    /// With the directions of its coordinates.
+    Polyline(MeasuredCurve, [MeasuredVector; 2]),
 }
 
 /// The gap and the frame of an obstacle at a node.
@@ -62,8 +63,17 @@ impl MeasuredObstacle {
                 Self { place: padded(point), shape }
             }
             Posted::Polyline(polyline) => {
-                let origin = polyline.points.first().map_or_else(MeasuredVector::zeros, |point| padded(point));
-                Self { place: origin, shape: ObstacleShape::Polyline(MeasuredCurve::new(polyline)) }
+                let first = polyline.points.first().map_or_else(MeasuredVector::zeros, |point| padded(point));
+                let (origin, axes) = match &polyline.section {
+                    None => (first, [MeasuredVector::x(), MeasuredVector::y()]),
+                    Some(section) => {
+                        let x = padded(&section.x).normalize();
+                        let across = x.cross(&padded(&section.y).normalize()).normalize();
+                        let y = across.cross(&x);
+                        (padded(&section.origin) + x * first.x + y * first.y, [x, y])
+                    }
+                };
+                Self { place: origin, shape: ObstacleShape::Polyline(MeasuredCurve::new(polyline), axes) }
             }
         }
     }
@@ -83,9 +93,9 @@ impl MeasuredObstacle {
             ObstacleShape::Cylinder { axis, radius, sign } => {
                 around_center(from - axis * from.dot(axis), *radius, *sign)
             }
-            ObstacleShape::Polyline(curve) => {
-                let (gap, [x, y]) = curve.gap([from.x, from.y]);
-                (gap, MeasuredVector::new(x, y, 0.0), curve.size)
+            ObstacleShape::Polyline(curve, axes) => {
+                let (gap, [x, y]) = curve.gap(axes.map(|axis| axis.dot(&from)));
+                (gap, axes[0] * x + axes[1] * y, curve.size)
             }
         };
         let reach = [place, &self.place, displacement, shift].into_iter().map(largest).fold(size, f64::max);

@@ -9,7 +9,7 @@ use crate::continuation::scene::tolerances::{COINCIDENCE_TOLERANCE, SINGLE_MOTIO
 use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::kinematics::Kinematics;
 use crate::mechanics::contact::obstacle::RigidSurface;
-use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size};
+use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size};
 use crate::mechanics::contact::{ContactPair, Sliding};
 use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::contact_jacobian;
@@ -201,9 +201,12 @@ fn coincide(first: &ContactPair, second: &ContactPair) -> bool {
             RigidSurface::Cylinder { axis: b, offset: y, side: v },
         ) => (near(a, b) || near(a, &scaled(b, -1.0))) && near(x, y) && u == v,
         (
-            RigidSurface::Curve { curve: a, offset: x, side: u, .. },
-            RigidSurface::Curve { curve: b, offset: y, side: v, .. },
-        ) => (Arc::ptr_eq(a, b) || a == b) && near(x, y) && u == v,
+            RigidSurface::Curve { curve: a, section: first, offset: x, side: u, .. },
+            RigidSurface::Curve { curve: b, section: second, offset: y, side: v, .. },
+        ) => {
+            let same_plane = first.iter().zip(second).all(|(first, second)| near(first, second));
+            (Arc::ptr_eq(a, b) || a == b) && same_plane && near(x, y) && u == v
+        }
         (
             RigidSurface::Plane { .. }
             | RigidSurface::Ball { .. }
@@ -263,12 +266,15 @@ fn build_contact(
             (RigidSurface::Cylinder { axis, offset, side }, snapped(gap, reach(point).max(*radius)))
         }
         request::Obstacle::Polyline(polyline) => {
-            let (origin, side) = (polyline.origin(), polyline.free_side());
-            let offset = [(place[0] - origin[0]) / length, (place[1] - origin[1]) / length, 0.0];
+            let (origin, side, [x, y]) = (polyline.origin(), polyline.free_side(), polyline.axes());
+            let at = polyline.coordinates(place);
+            let offset = [(at[0] - origin[0]) / length, (at[1] - origin[1]) / length, 0.0];
+            let section = [x, y, cross(&x, &y)];
             let curve = Arc::clone(&curves[contact.obstacle.as_str()]);
             let before = side * curve.closest([offset[0], offset[1]]).distance;
-            let far = polyline.points.iter().map(|point| reach(point)).fold(0.0, f64::max);
-            (RigidSurface::Curve { curve, offset, side, before }, snapped(before * length, far))
+            let from = polyline.section.as_ref().map_or(0.0, |section| reach(&section.origin));
+            let far = polyline.points.iter().map(|point| reach(point)).fold(from, f64::max);
+            (RigidSurface::Curve { curve, section, offset, side, before }, snapped(before * length, far))
         }
         request::Obstacle::Plane { point, normal } => {
             let unit = unit_of(normal);

@@ -26,10 +26,12 @@ pub enum RigidSurface {
         /// 1 where nodes are free outside, -1 where they are free inside.
         side: f64,
     },
-    /// A curve in the plane.
+    /// A curve in a plane, straight across it.
     Curve {
         curve: Arc<PlaneCurve>,
-        /// The position of the undeformed node, relative to the origin of the curve.
+        /// Unit vectors along the coordinates of the curve, and across its plane.
+        section: [Vector; 3],
+        /// The position of the undeformed node, relative to the origin of the curve, in its coordinates.
         offset: Vector,
         /// 1 where nodes are free to the left of the curve, -1 where they are free to the right.
         side: f64,
@@ -56,11 +58,11 @@ impl RigidSurface {
                 let (change, normal, value) = around_center(offset, &across, *side);
                 (change, normal, Curvature { value, straight: *axis })
             }
-            Self::Curve { curve, offset, side, before } => {
-                let place = add(offset, 1.0, relative);
-                let closest = curve.closest([place[0], place[1]]);
-                let normal = [side * closest.normal[0], side * closest.normal[1], 0.0];
-                (side * closest.distance - before, normal, Curvature::uniform(-side * closest.curvature_at_place()))
+            Self::Curve { curve, section: [x, y, straight], offset, side, before } => {
+                let closest = curve.closest([offset[0] + dot(relative, x), offset[1] + dot(relative, y)]);
+                let normal = add(&scaled(x, side * closest.normal[0]), side * closest.normal[1], y);
+                let curvature = Curvature { value: -side * closest.curvature_at_place(), straight: *straight };
+                (side * closest.distance - before, normal, curvature)
             }
         }
     }

@@ -72,7 +72,7 @@ pub(super) fn loads(scope: &Scope, around: &Surroundings, stage: &Stage, at: &Do
         mistakes.add(at, || {
             "the stage has no load; a force, a body force, a traction or a pressure that is not zero on a free component, a moment on a rotation that is free, a \
              displacement of a support that an element joins to a free component, or a motion of an obstacle against a \
-             contact is expected"
+             contact (along itself only with friction) is expected"
         });
     }
 }

@@ -8,6 +8,9 @@ use crate::model::input::limits::MAX_POLYLINE_POINTS;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::request::{Obstacle, Polyline, Side};
 
+/// Directions whose cosine differs from 1 by no more than this are parallel: an angle of some 1e-6.
+const PARALLEL: f64 = 1e-12;
+
 /// The curves of the polylines, in the unit of the model; `None` for other obstacles and for malformed polylines.
 pub(super) type Curves = Vec<Option<PlaneCurve>>;
 
@@ -57,14 +60,8 @@ pub(super) fn obstacles(scope: &Scope, mistakes: &mut Mistakes) -> Curves {
 
 fn curve_of(polyline: &Polyline, dimension: usize, at: &DocumentPlace, mistakes: &mut Mistakes) -> Option<PlaneCurve> {
     let before = mistakes.count();
-    if dimension != 2 {
-        mistakes.add(
-            &at.member("kind"),
-            || "a polyline is an obstacle in the plane; in space there are planes, balls and cylinders",
-        );
-        return None;
-    }
-    let Polyline { points, closed, rounding, side } = polyline;
+    check_section(polyline, dimension, at, mistakes);
+    let Polyline { points, closed, rounding, side, section: _ } = polyline;
     let at_points = at.member("points");
     if points.len() > MAX_POLYLINE_POINTS {
         let found = points.len();
@@ -72,7 +69,7 @@ fn curve_of(polyline: &Polyline, dimension: usize, at: &DocumentPlace, mistakes:
         return None;
     }
     for (number, point) in points.iter().enumerate() {
-        numbers::vector(point, dimension, &at_points.index(number), mistakes);
+        numbers::vector(point, 2, &at_points.index(number), mistakes);
     }
     if let Some(rounding) = rounding {
         numbers::positive(*rounding, &at.member("rounding"), mistakes);
@@ -87,6 +84,43 @@ fn curve_of(polyline: &Polyline, dimension: usize, at: &DocumentPlace, mistakes:
         return None;
     }
     polyline.curve().map_err(|mistake| note(mistake, polyline, at, mistakes)).ok()
+}
+
+/// The plane of the points in space.
+fn check_section(polyline: &Polyline, dimension: usize, at: &DocumentPlace, mistakes: &mut Mistakes) {
+    let at_section = at.member("section");
+    let section = match (&polyline.section, dimension) {
+        (Some(section), 3) => section,
+        (Some(_), _) => {
+            return mistakes.add(&at_section, || "a polyline in the plane has no section; leave it out");
+        }
+        (None, 3) => {
+            return mistakes.add(at, || {
+                "in space the `section` is missing, the plane of the points: `{\"origin\": [0, 0, 0], \"x\": [1, 0, 0], \"y\": \
+                 [0, 0, 1]}`; the obstacle is straight across it"
+            });
+        }
+        (None, _) => return,
+    };
+    numbers::vector(&section.origin, dimension, &at_section.member("origin"), mistakes);
+    let mut is_right = true;
+    for (name, direction) in [("x", &section.x), ("y", &section.y)] {
+        let at = at_section.member(name);
+        let sane = numbers::vector(direction, dimension, &at, mistakes);
+        if sane && largest(direction) == 0.0 {
+            mistakes.add(&at, || "the direction is zero; a vector in the plane of the points is expected");
+        }
+        is_right &= sane && largest(direction) > 0.0;
+    }
+    if is_right {
+        let (x, y) = (scaled(&section.x, norm(&section.x)), scaled(&section.y, norm(&section.y)));
+        if 1.0 - dot(&x, &y).abs() <= PARALLEL {
+            mistakes.add(
+                &at_section.member("y"),
+                || "`y` is along `x`; another direction in the plane of the points is expected",
+            );
+        }
+    }
 }
 
 fn note(mistake: CurveMistake, polyline: &Polyline, at: &DocumentPlace, mistakes: &mut Mistakes) {
@@ -191,12 +225,15 @@ fn facing_round(outward: &[f64], radius: f64, side: Side, tolerance: f64) -> Fac
 }
 
 fn facing_curve(scope: &Scope, position: &[f64], polyline: &Polyline, curve: &PlaneCurve) -> Facing {
-    let (origin, side) = (polyline.origin(), polyline.free_side());
-    let closest = curve.closest([position[0] - origin[0], position[1] - origin[1]]);
-    let reach = polyline.points.iter().map(|point| largest(point)).fold(largest(position), f64::max);
+    let (origin, side, axes) = (polyline.origin(), polyline.free_side(), polyline.axes());
+    let [x, y] = polyline.coordinates(position);
+    let closest = curve.closest([x - origin[0], y - origin[1]]);
+    let far = polyline.section.as_ref().map_or(0.0, |section| largest(&section.origin));
+    let reach = polyline.points.iter().map(|point| largest(point)).fold(largest(position).max(far), f64::max);
+    let component = |k: usize| side * (closest.normal[0] * axes[0][k] + closest.normal[1] * axes[1][k]);
     Facing {
         gap: side * closest.distance,
-        normal: Some(closest.normal.map(|part| side * part).to_vec()),
+        normal: Some((0..scope.model.dimension).map(component).collect()),
         tolerance: scope.penetration_tolerance(reach),
     }
 }

@@ -11,6 +11,8 @@ use crate::model::input::names::{quoted, suggestion};
 use crate::model::request::{ElasticConstants, Element, Material, PlaneCondition, Solid, Stage, Surface};
 use crate::model::solids::data;
 use crate::model::solids::faces::{FaceMatch, surface_faces};
+use itertools::Itertools;
+use std::collections::HashMap;
 
 pub(super) fn materials(scope: &Scope, mistakes: &mut Mistakes) {
     let at = scope.at.member("materials");
@@ -152,8 +154,13 @@ pub(super) fn surfaces(scope: &Scope, mistakes: &mut Mistakes) {
         if surface.faces.is_empty() {
             mistakes.add(&at, || "the surface has no face; one or more are expected");
         }
+        let mut seen = HashMap::new();
         for (index, (nodes, face)) in surface.faces.iter().zip(faces).enumerate() {
             let at = at.index(index);
+            let sorted: Vec<&String> = nodes.iter().sorted_unstable().collect();
+            if let Some(first) = seen.insert(sorted, index) {
+                mistakes.add(&at, || format!("the face is in the list already, at {first}; each is expected once"));
+            }
             let before = mistakes.count();
             for (place, node) in nodes.iter().enumerate() {
                 scope.node(node, &at.index(place), mistakes);
@@ -166,7 +173,8 @@ pub(super) fn surfaces(scope: &Scope, mistakes: &mut Mistakes) {
                 FaceMatch::None => mistakes.add(&at, || {
                     let listed: Vec<String> = nodes.iter().map(|node| quoted(node).to_string()).collect();
                     format!(
-                        "no solid has a face of the nodes {}, and in the plane no bar or beam joins them; all nodes of one face are expected",
+                        "no solid has a face of the nodes {}, and in the plane no bar or beam of two nodes joins them; all nodes of one face \
+                         are expected (beams of three nodes have no sides: divide each into two)",
                         listed.join(", ")
                     )
                 }),

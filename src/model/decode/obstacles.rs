@@ -2,7 +2,7 @@
 
 use crate::model::decode::reader::{Choices, Fields, Input, boolean, number, numbers};
 use crate::model::input::mistakes::Mistakes;
-use crate::model::request::{Obstacle, Polyline, Side};
+use crate::model::request::{Obstacle, Polyline, Section, Side};
 
 const PLANE: Fields = Fields { what: "a plane", known: &["kind", "point", "normal"], later: &[] };
 
@@ -11,7 +11,9 @@ const BALL: Fields = Fields { what: "a ball", known: &["kind", "center", "radius
 const CYLINDER: Fields = Fields { what: "a cylinder", known: &["kind", "point", "axis", "radius", "side"], later: &[] };
 
 const POLYLINE: Fields =
-    Fields { what: "a polyline", known: &["kind", "points", "closed", "rounding", "side"], later: &[] };
+    Fields { what: "a polyline", known: &["kind", "points", "closed", "rounding", "side", "section"], later: &[] };
+
+const SECTION: Fields = Fields { what: "a section", known: &["origin", "x", "y"], later: &[] };
 
 #[derive(Debug, Clone, Copy)]
 enum ObstacleKind {
@@ -77,7 +79,20 @@ fn polyline(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {
     let closed = object.with_default("closed", false, mistakes, boolean);
     let rounding = object.optional("rounding", mistakes, number);
     let side = object.optional("side", mistakes, side);
-    Some(Obstacle::Polyline(Polyline { points: points?, closed: closed?, rounding: rounding?, side: side? }))
+    let section = object.optional("section", mistakes, section);
+    Some(Obstacle::Polyline(Polyline {
+        points: points?,
+        closed: closed?,
+        rounding: rounding?,
+        side: side?,
+        section: section?,
+    }))
+}
+
+fn section(input: &Input, mistakes: &mut Mistakes) -> Option<Section> {
+    let object = input.object(&SECTION, mistakes)?;
+    let [origin, x, y] = ["origin", "x", "y"].map(|name| object.required(name, mistakes, numbers));
+    Some(Section { origin: origin?, x: x?, y: y? })
 }
 
 fn side(input: &Input, mistakes: &mut Mistakes) -> Option<Side> {

@@ -112,9 +112,15 @@ fn obstacle() -> impl Strategy<Value = Obstacle> {
     let side = one_of([Side::Outside, Side::Inside]);
     let ball =
         (numbers(), number(), side.clone()).prop_map(|(center, radius, side)| Obstacle::Ball { center, radius, side });
-    let polyline = (vec(numbers(), 0..4), any::<bool>(), of(number()), of(side))
-        .prop_map(|(points, closed, rounding, side)| Obstacle::Polyline(Polyline { points, closed, rounding, side }));
-    prop_oneof![plane, ball, polyline]
+    let cylinder = (numbers(), numbers(), number(), side.clone())
+        .prop_map(|(point, axis, radius, side)| Obstacle::Cylinder { point, axis, radius, side });
+    let section = (numbers(), numbers(), numbers()).prop_map(|(origin, x, y)| Section { origin, x, y });
+    let polyline = (vec(numbers(), 0..4), any::<bool>(), of(number()), of(side), of(section)).prop_map(
+        |(points, closed, rounding, side, section)| {
+            Obstacle::Polyline(Polyline { points, closed, rounding, side, section })
+        },
+    );
+    prop_oneof![plane, ball, cylinder, polyline]
 }
 
 fn contact() -> impl Strategy<Value = Contact> {

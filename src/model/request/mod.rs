@@ -32,8 +32,8 @@ pub use record::{
 };
 pub use structure::{
     BendingStiffness, Component, Contact, ContactDiscretisation, ContentEncoding, DisplacementBound, ElasticConstants,
-    Element, Material, MeshFile, MeshFormat, MeshGroup, Model, NamedSet, Obstacle, PlaneCondition, Polyline, Side,
-    Solid, Stage, StageControl, Surface, Units, Until,
+    Element, Material, MeshFile, MeshFormat, MeshGroup, Model, NamedSet, Obstacle, PlaneCondition, Polyline, Section,
+    Side, Solid, Stage, StageControl, Surface, Units, Until,
 };
 
 /// A model and how to trace it.

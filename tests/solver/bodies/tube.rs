@@ -66,6 +66,20 @@ fn a_tube_under_pressure_buckles() {
     close(extrapolated(coarse, fine, 2), 3.0, 1e-4, "load of the bifurcation");
 }
 
+/// Without axes of symmetry the two ways to become oval vanish together. The tangent is symmetric up to the round-off of its
+/// largest stiffness, and the sign of its determinant stays.
+#[test]
+fn a_free_tube_buckles_in_two_ways_at_once() {
+    let mut request = tube(32, 0.0, 0.0, 3.3);
+    request.model.contacts.clear();
+    request.model.supports = serde_json::from_value(json!({"n0": ["x", "y"], "n16": ["y"]})).expect("supports");
+    let increments = path(&request);
+    let found: Vec<&Increment> = increments.iter().filter(|increment| increment.point.bifurcation).collect();
+    let [found] = found[..] else { panic!("{} bifurcations", found.len()) };
+    assert_eq!(found.point.event.as_deref(), Some("two eigenvalues cross zero together"));
+    close(found.load_factor, 3.0239, 1e-3, "load of the bifurcation");
+}
+
 #[test]
 fn the_opposite_sides_of_a_tube_meet() {
     let meetings = [(32, 12.5), (64, 11.5), (128, 11.0)].map(|(count, until)| {

@@ -238,15 +238,19 @@ class Model:
         closed: bool = False,
         rounding: Optional[float] = None,
         side: Optional[str] = None,
+        section: Optional[Mapping[str, Vector]] = None,
     ) -> str:
         """Adds a curve in the plane as obstacle: the cubic spline through points, or with a `rounding` straight edges
         with corners rounded off within that length. An open one is free to the left of its direction; of a closed one
-        nodes stay `"outside"` or `"inside"`."""
+        nodes stay `"outside"` or `"inside"`. In space the points lie in the plane of a `section`,
+        `{"origin": (0, 0, 0), "x": (1, 0, 0), "y": (0, 0, 1)}`, and the obstacle is straight across it."""
         obstacle: Dict[str, Any] = {"kind": "polyline", "points": plain(points), "closed": closed}
         if rounding is not None:
             obstacle["rounding"] = plain(rounding)
         if side is not None:
             obstacle["side"] = side
+        if section is not None:
+            obstacle["section"] = {name: plain(value) for name, value in section.items()}
         return self._obstacle(name, obstacle)
 
     def _obstacle(self, name: str, obstacle: Dict[str, Any]) -> str:

@@ -226,7 +226,8 @@ impl Bordered {
     }
 
     /// Row, column and difference to the mirror image of the entries below the diagonal that differ by more than round-off, in
-    /// order. A difference is round-off relative to the terms that the row and the column add up.
+    /// order. A difference is round-off relative to the terms that the row and the column add up: of a sum of semidefinite
+    /// parts they are bounded by the geometric mean of the diagonal entries.
     fn differences(&self) -> impl Iterator<Item = (usize, usize, f64)> {
         let below = self.touched.iter().filter(|(row, column)| row != column);
         let mut below: Vec<(usize, usize)> = below.map(|(row, column)| (*row.max(column), *row.min(column))).collect();
@@ -235,7 +236,7 @@ impl Bordered {
         below.into_iter().filter_map(|(row, column)| {
             let value = |row, column| self.pattern.place(row, column).map(|place| self.values[place]);
             let (below, above) = (value(row, column)?, value(column, row)?);
-            let diagonal = value(row, row)?.abs().min(value(column, column)?.abs());
+            let diagonal = value(row, row)?.abs().sqrt() * value(column, column)?.abs().sqrt();
             let size = below.abs().max(above.abs()).max(diagonal);
             let difference = below - above;
             (difference.abs() > 4.0 * f64::EPSILON * size).then_some((row, column, difference))

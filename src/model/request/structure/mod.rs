@@ -23,7 +23,7 @@ pub use material::{ElasticConstants, Material};
 pub use mesh::{ContentEncoding, MeshFile, MeshGroup};
 pub use model::{Model, Units};
 pub use obstacle::{Contact, ContactDiscretisation, Obstacle, Side};
-pub use polyline::Polyline;
+pub use polyline::{Polyline, Section};
 pub use solid::{PlaneCondition, Solid};
 pub use stage::{DisplacementBound, Stage, StageControl, Until};
 pub use surface::{NamedSet, Surface};

@@ -39,7 +39,7 @@ pub enum Obstacle {
         #[serde(default)]
         side: Side,
     },
-    /// A smooth curve through points, or a polygon with rounded corners, in the plane.
+    /// A smooth curve through points, or a polygon with rounded corners, in the plane; in space straight across it.
     Polyline(Polyline),
 }
 

@@ -128,12 +128,16 @@ function obstacleProblem(reading, obstacle) {
   return isDirection ? reading.vectorOr(obstacle.point) : `its ${member} has to be a direction`;
 }
 
-function polylineProblem(reading, { points, closed, rounding }) {
+const isPoint = (point) => Array.isArray(point) && point.length === 2 && point.every(Number.isFinite);
+
+function polylineProblem(reading, { points, closed, rounding, section }) {
   const least = closed ? 3 : 2;
-  if (reading.dimension !== 2) return "a polyline is an obstacle in the plane";
+  if (reading.dimension === 3 && !["origin", "x", "y"].every((name) => reading.isVector(section?.[name]))) {
+    return "in space its section has to be {\"origin\": [...], \"x\": [...], \"y\": [...]}";
+  }
   if (listOf(points).length < least) return `it has to have ${least} points or more`;
   if (rounding !== undefined && !(rounding > 0)) return "its rounding has to be a number above 0";
-  return listOf(points).map((point) => reading.vectorOr(point)).find(Boolean) ?? null;
+  return listOf(points).every(isPoint) ? null : "its points have to be 2 numbers each";
 }
 
 /** How many nodes an element of a kind may have. */

@@ -41,11 +41,27 @@ export function fromMiddle(obstacle, place, moved = []) {
   return plus(from, axis, -dot(from, axis));
 }
 
+/** The unit vectors of the coordinates of a polyline's points, and across their plane. */
+export function sectionAxes({ section }) {
+  const x = unit(section.x);
+  const across = unit(cross(x, section.y));
+  return [x, cross(across, x), across];
+}
+
+/** The normal of a polyline in space, or in the plane. */
+function normalOfPolyline(obstacle, place) {
+  if (!obstacle.section) return normalOfCurve(obstacle, place);
+  const [x, y] = sectionAxes(obstacle);
+  const from = plus(place, obstacle.section.origin, -1);
+  const [along, up] = normalOfCurve(obstacle, [dot(from, x), dot(from, y)]);
+  return plus(times(x, along), y, up);
+}
+
 /** The normal of an obstacle into the free side at a position, and the tangents to which the reactions refer. */
 export function frame(obstacle, place, moved = []) {
   let normal;
   if (obstacle.kind === "plane") normal = unit(obstacle.normal);
-  else if (obstacle.kind === "polyline") normal = normalOfCurve(obstacle, plus(place, moved, -1));
+  else if (obstacle.kind === "polyline") normal = normalOfPolyline(obstacle, plus(place, moved, -1));
   else {
     const out = unit(fromMiddle(obstacle, place, moved));
     normal = obstacle.side === "inside" ? times(out, -1) : out;

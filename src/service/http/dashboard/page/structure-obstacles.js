@@ -1,7 +1,7 @@
 // Obstacles in the picture of a structure: of planes and of large balls and cylinders the part near the feet, that is, near the nodes that may
 // touch them.
 
-import { frame, fromMiddle, vector } from "./geometry.js";
+import { frame, fromMiddle, sectionAxes, vector } from "./geometry.js";
 import { planeCurve } from "./plane-curve.js";
 import { fromSheet } from "./plot-style.js";
 import { components } from "./units.js";
@@ -56,7 +56,7 @@ export class ObstacleDrawing {
 
   /** Draws an obstacle; answers a place on it. */
   shape(name, obstacle) {
-    if (obstacle.kind === "polyline") return this.curve(name, obstacle);
+    if (obstacle.kind === "polyline") return obstacle.section ? this.prism(name, obstacle) : this.curve(name, obstacle);
     if (!this.extent.isWhole(obstacle)) return this.part(name, obstacle);
     return obstacle.kind === "ball" ? this.ball(name, obstacle) : this.cylinder(name, obstacle);
   }
@@ -147,6 +147,34 @@ export class ObstacleDrawing {
       if (dimension === 2 && obstacle.side !== "inside") traces.area(round, fromSheet("--ground"));
     }
     return center;
+  }
+
+  /** A polyline in space: the part of its curve near the structure at two places across its plane, and straight lines
+   *  between them; answers a place on it. */
+  prism(name, obstacle) {
+    const { traces, extent } = this;
+    const [x, y, across] = sectionAxes(obstacle);
+    const origin = plus(obstacle.section.origin, this.moved.get(name) ?? []);
+    const feet = this.feet(name);
+    const along = (feet.length ? feet : [extent.middle]).map((place) => [dot(plus(place, origin, -1), across)]);
+    const [[low, high]] = extent.stand(name, along);
+    const beyond = (feet.length ? BEYOND : ALONE) * extent.size;
+    const { places, outwards } = planeCurve(obstacle);
+    const middle = (low + high) / 2;
+    const at = ([first, second], depth) => plus(plus(plus(origin, x, first), y, second), across, depth);
+    const onwards = ({ place }, way) => [...Array(SIDE).keys()].map((step) =>
+      plus(place, way, ((step + 1) * extent.size) / SIDE));
+    const curve = places.map(({ place }) => place);
+    const whole = outwards.length
+      ? [...onwards(places[0], outwards[0]).reverse(), ...curve, ...onwards(places.at(-1), outwards[1])] : curve;
+    const near = whole.filter((place) => extent.isNear(at(place, middle), ALONE));
+    const shown = near.length > 1 ? near : whole;
+    const edges = [low - beyond, high + beyond].map((depth) => shown.map((place) => at(place, depth)));
+    const every = Math.max(1, Math.floor((shown.length - 1) / RULES));
+    const rules = shown.map((_, number) => number).filter((number) => number % every === 0 || number === shown.length - 1)
+      .map((number) => edges.map((edge) => edge[number]));
+    traces.lines("obstacle", [...edges, ...rules], this.line, name);
+    return at(shown[Math.floor(shown.length / 2)], middle);
   }
 
   /** A cylinder all round, as far along as its feet need; answers the middle of its axis. */
