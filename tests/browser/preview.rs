@@ -47,5 +47,21 @@ async fn a_model_is_drawn_as_it_is_written_and_what_cannot_be_drawn_is_said() {
     let before = browser.ask(&node).await;
     browser.put("#preview-azimuth", "30").await;
     browser.until(&format!("{node} !== '{}'", before.as_str().expect("text"))).await;
+    // Obstacles that are in space alone: round, and straight across a section.
+    let mut request = scene("curving-slip");
+    let finite = format!("[...({}).x].filter(Number.isFinite).length", trace("obstacle"));
+    let flat = browser.ask(&finite).await.as_u64().expect("a count");
+    request["model"]["obstacles"]["drum"] =
+        json!({"kind": "cylinder", "point": [0, 0, -0.3], "axis": [0, -3, 0], "radius": 0.3});
+    request["model"]["obstacles"]["ramp"] = json!({"kind": "polyline", "points": [[-1, -0.1], [0, -0.1], [1, 0.2]],
+        "rounding": 0.2, "section": {"origin": [0, 0, 0], "x": [1, 0, 0], "y": [0, 0, 1]}});
+    browser.put("#request", &request.to_string()).await;
+    // Two circles of the drum, and more.
+    browser.until(&format!("{SAID} === '' && {finite} > {}", flat + 98)).await;
+    request["model"]["obstacles"]["drum"]["axis"] = json!([0, 0, 0]);
+    request["model"]["obstacles"]["ramp"].as_object_mut().expect("members").remove("section");
+    browser.put("#request", &request.to_string()).await;
+    browser.until(&format!("{SAID}.includes('“drum” is not drawn: its axis has to be a direction')")).await;
+    browser.until(&format!("{SAID}.includes('“ramp” is not drawn: in space its section')")).await;
     browser.close(served.url(), &["status of 4"]).await;
 }

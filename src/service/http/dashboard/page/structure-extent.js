@@ -22,7 +22,8 @@ export class StructureExtent {
     for (const obstacle of Object.values(model.obstacles ?? {}).filter(this.isWhole)) {
       const center = plus(middle, fromMiddle(obstacle, middle), -1);
       // A cylinder reaches less far towards its axis.
-      const reach = (axis) => obstacle.radius * Math.sqrt(1 - (obstacle.axis ? unit(obstacle.axis)[axis] ** 2 : 0));
+      const along = obstacle.axis ? unit(obstacle.axis) : [0, 0, 0];
+      const reach = (axis) => obstacle.radius * Math.sqrt(Math.max(0, 1 - along[axis] ** 2));
       this.widen([-1, 1].map((side) => center.map((value, axis) => value + side * reach(axis))));
     }
   }

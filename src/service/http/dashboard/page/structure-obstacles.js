@@ -1,5 +1,5 @@
-// Obstacles in the picture of a structure: of planes and of large balls and cylinders the part near the feet, that is, near the nodes that may
-// touch them.
+// Obstacles in the picture of a structure: of planes and of large balls and cylinders the part near the feet, that is, near the
+// nodes that may touch them.
 
 import { frame, fromMiddle, sectionAxes, vector } from "./geometry.js";
 import { planeCurve } from "./plane-curve.js";
@@ -10,7 +10,7 @@ const { plus, unit, dot, length } = vector;
 /** Corners of the polygon that represents a circle, and of each side of the part of an obstacle. */
 const ROUND = 48;
 const SIDE = 16;
-/** Straight lines of a cylinder. */
+/** Straight lines of a cylinder, and about as many of a polyline in space. */
 const RULES = 12;
 /** How far a part goes beyond the feet, how deep it is drawn in a plane, and half its side where no node may touch it: as parts
  *  of the extent. */
