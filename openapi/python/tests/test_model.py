@@ -61,6 +61,13 @@ class Building(unittest.TestCase):
         drum = {"kind": "cylinder", "point": [0, 0, -1], "axis": [1, 0, 0], "radius": 2, "side": "outside"}
         self.assertEqual(model.request()["model"]["obstacles"], {"drum": drum})
 
+    def test_a_polyline_in_space(self):
+        model = arcslip.Model(3)
+        section = {"origin": (0, 0, 0), "x": (1, 0, 0), "y": (0, 0, 1)}
+        model.polyline("ramp", [(0, 0), (4, 1)], rounding=0.5, section=section)
+        ramp = model.request()["model"]["obstacles"]["ramp"]
+        self.assertEqual(ramp["section"], {"origin": [0, 0, 0], "x": [1, 0, 0], "y": [0, 0, 1]})
+
     def test_a_request_is_a_copy(self):
         model = arcslip.Model(2)
         model.node("a", 0, 0)

@@ -123,28 +123,38 @@ mod tests {
     const FRICTION: CoulombFriction = CoulombFriction { coefficient: 0.4 };
     const PENALTIES: Penalties = Penalties { normal: 300.0, tangential: 70.0 };
 
-    /// A ball of radius 2 around the origin, or the plane z = 0.
-    fn frame(place: &[f64; 3], ball: bool) -> Frame {
-        let (obstacle, initial_gap, relative) = if ball {
-            let offset = [0.0, 0.0, 2.0];
-            (RigidSurface::Ball { offset, side: 1.0 }, 0.0, [place[0], place[1], place[2] - 2.0])
-        } else {
-            (RigidSurface::Plane { normal: [0.0, 0.0, 1.0] }, 0.0, *place)
+    #[derive(Clone, Copy, PartialEq)]
+    enum Shape {
+        /// `z = 0`
+        Plane,
+        /// Of radius 2 around the origin.
+        Ball,
+        /// Of radius 2 about an axis in the plane `z = 0`.
+        Cylinder,
+    }
+
+    fn frame(place: &[f64; 3], shape: Shape) -> Frame {
+        let offset = [0.0, 0.0, 2.0];
+        let from_top = [place[0], place[1], place[2] - 2.0];
+        let (obstacle, relative) = match shape {
+            Shape::Plane => (RigidSurface::Plane { normal: [0.0, 0.0, 1.0] }, *place),
+            Shape::Ball => (RigidSurface::Ball { offset, side: 1.0 }, from_top),
+            Shape::Cylinder => (RigidSurface::Cylinder { axis: [0.6, 0.8, 0.0], offset, side: 1.0 }, from_top),
         };
         ContactPair {
             kinematics: crate::mechanics::contact::kinematics::Kinematics::Node(0),
             obstacle,
-            initial_gap,
+            initial_gap: 0.0,
             friction: FRICTION,
             sliding: Sliding::Plane,
         }
         .frame(&relative)
     }
 
-    fn response(place: &[f64; 3], start: &[f64; 3], ball: bool) -> PenaltyResponse {
-        let before = if ball { [0.02, 0.03, -0.01] } else { [0.02, 0.03, 0.0] };
+    fn response(place: &[f64; 3], start: &[f64; 3], shape: Shape) -> PenaltyResponse {
+        let before = if shape == Shape::Plane { [0.02, 0.03, 0.0] } else { [0.02, 0.03, -0.01] };
         let moved = std::array::from_fn(|k| place[k] - start[k]);
-        respond(PENALTIES, FRICTION, &frame(place, ball), &before, &moved)
+        respond(PENALTIES, FRICTION, &frame(place, shape), &before, &moved)
     }
 
     /// The stiffness agrees with central differences of the force: sticking and slipping, flat and curved.
@@ -152,16 +162,17 @@ mod tests {
     fn the_stiffness_is_the_derivative_of_the_force() {
         let flat = [0.0, 0.0, -0.01];
         let curved = [0.6, 1.1, (1.99_f64.powi(2) - 0.36 - 1.21).sqrt()];
-        for (start, ball) in [(flat, false), (curved, true)] {
+        let beside_axis = [0.46, 0.28, (1.99_f64.powi(2) - 0.04).sqrt()];
+        for (start, shape) in [(flat, Shape::Plane), (curved, Shape::Ball), (beside_axis, Shape::Cylinder)] {
             for (motion, status) in [([1e-4, -2e-4, -1e-4], Status::Stick), ([0.05, -0.03, -0.01], Status::Slip)] {
                 let place: [f64; 3] = std::array::from_fn(|k| start[k] + motion[k]);
-                let here = response(&place, &start, ball);
+                let here = response(&place, &start, shape);
                 assert_eq!(here.status, status);
                 for column in 0..3 {
                     let shifted = |sign: f64| {
                         let mut place = place;
                         place[column] += sign * 1e-6;
-                        response(&place, &start, ball).force
+                        response(&place, &start, shape).force
                     };
                     let (ahead, behind) = (shifted(1.0), shifted(-1.0));
                     for row in 0..3 {
@@ -176,7 +187,7 @@ mod tests {
 
     #[test]
     fn slip_lies_on_the_cone_and_runs_against_friction() {
-        let slipping = response(&[0.05, 0.03, -0.02], &[0.0, 0.0, -0.01], false);
+        let slipping = response(&[0.05, 0.03, -0.02], &[0.0, 0.0, -0.01], Shape::Plane);
         let tangential = slipping.reaction.tangential;
         let size = dot(&tangential, &tangential).sqrt();
         assert!((size - 0.4 * slipping.reaction.normal).abs() < 1e-14);
@@ -193,9 +204,9 @@ mod tests {
 
     #[test]
     fn an_open_contact_does_nothing_and_forgets() {
-        let open = response(&[0.05, 0.03, 1e-9], &[0.0, 0.0, -0.01], false);
+        let open = response(&[0.05, 0.03, 1e-9], &[0.0, 0.0, -0.01], Shape::Plane);
         assert_eq!((open.status, open.force, open.reaction.tangential), (Status::Free, [0.0; 3], [0.0; 3]));
-        let closed = respond(PENALTIES, FRICTION, &frame(&[0.0; 3], false), &[0.0; 3], &[0.0; 3]);
+        let closed = respond(PENALTIES, FRICTION, &frame(&[0.0; 3], Shape::Plane), &[0.0; 3], &[0.0; 3]);
         assert_eq!(closed.status, Status::Stick);
         assert_eq!(closed.stiffness[2][2], PENALTIES.normal);
     }

@@ -75,6 +75,11 @@ fn mistakes_in_solids_are_told() {
 fn mistakes_in_surfaces_and_loads_are_told() {
     let face = "/model/surfaces/top/faces/0";
     is_told(face, "no solid has a face", |model| model["surfaces"]["top"]["faces"][0] = json!(["a", "e"]));
+    is_told("/model/surfaces/top/faces/1", "in the list already, at 0", |model| {
+        let mut turned = model["surfaces"]["top"]["faces"][0].as_array().expect("a face").clone();
+        turned.reverse();
+        model["surfaces"]["top"]["faces"] = json!([model["surfaces"]["top"]["faces"][0], turned]);
+    });
     is_told(face, "inside the body", |model| model["surfaces"]["top"]["faces"][0] = json!(["b", "e"]));
     is_told(&format!("{face}/1"), "no node", |model| model["surfaces"]["top"]["faces"][0] = json!(["d", "z"]));
     is_told("/model/stages/0/tractions/tip", "no surface", |model| {
