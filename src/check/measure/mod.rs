@@ -197,8 +197,8 @@ impl Workspace {
                 outside.add(posted, contact.node, &self.displacements[contact.node], &force);
             }
             Counterpart::Body(body) if state.normal_reaction != 0.0 => {
-                let traction = state.tangential_reaction.first().copied().unwrap_or(0.0);
-                for (node, force) in body.state(&self.displacements).forces(state.normal_reaction, traction).0 {
+                let here = body.state(&self.displacements);
+                for (node, force) in here.forces(state.normal_reaction, &state.tangential_reaction).0 {
                     self.balance[node] -= force;
                     outside.between(&force);
                 }
@@ -284,8 +284,7 @@ impl Judge {
                 Counterpart::Body(body) => {
                     let here = body.state(&self.work.displacements);
                     let motion = here.motion_since(&body.state(&self.before.displacements));
-                    let traction = state.tangential_reaction.first().copied().unwrap_or(0.0);
-                    (motion, here.forces(state.normal_reaction, traction).1)
+                    (motion, here.forces(state.normal_reaction, &state.tangential_reaction).1)
                 }
             };
             let seen = Seen {

@@ -225,8 +225,11 @@ impl Posted {
             Counterpart::Body(body) => MeasuredFrame {
                 gap: body.gap(displacements),
                 rounding: body.rounding(displacements),
-                normal: MeasuredVector::y(),
-                tangents: [MeasuredVector::x(), MeasuredVector::zeros()],
+                normal: if self.dimension == 2 { MeasuredVector::y() } else { MeasuredVector::z() },
+                tangents: [
+                    MeasuredVector::x(),
+                    if self.dimension == 2 { MeasuredVector::zeros() } else { MeasuredVector::y() },
+                ],
             },
         }
     }

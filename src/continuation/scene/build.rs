@@ -5,7 +5,7 @@ use crate::continuation::scene::elements::ElementBuilder;
 use crate::continuation::scene::requested_contacts::Reported;
 use crate::continuation::scene::solid_loads::{LoadedSolids, add_pressure_faces, pressed_surfaces};
 use crate::continuation::scene::stage_load::StageLoad;
-use crate::continuation::scene::tolerances::{COINCIDENCE_TOLERANCE, SINGLE_MOTION};
+use crate::continuation::scene::tolerances::{COINCIDENCE_TOLERANCE, MISSING_MOTION, SINGLE_MOTION};
 use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::kinematics::Kinematics;
 use crate::mechanics::contact::obstacle::RigidSurface;
@@ -23,6 +23,7 @@ use crate::model::solids::contact_surfaces::{BodyContact, ContactSurfaces};
 use crate::resources::budget;
 use crate::result::plan::LeftOut;
 use indexmap::IndexMap;
+use nalgebra::{Matrix3, SymmetricEigen};
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
@@ -288,30 +289,55 @@ fn build_contact(
     ContactPair { kinematics: Kinematics::Node(node), obstacle, initial_gap, friction, sliding }
 }
 
-/// A contact of bodies, in the axes of the surface that is touched.
+/// A contact of bodies, in the axes of the surfaces: along them, then across.
 ///
-/// Where supports leave the two surfaces a single relative motion at the node, as on an axis of symmetry, friction does no
-/// work of its own and its share of the reaction would be undetermined.
+/// Where supports leave the two surfaces fewer relative motions at the node than there are axes, as on an axis of symmetry,
+/// friction along the missing ones does no work of its own and its share of the reaction would be undetermined.
 fn between_bodies(contact: &request::Contact, body: BodyContact, structure: &Structure) -> ContactPair {
+    let normal = if structure.dimension == 2 { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] };
     let mut built = ContactPair {
         kinematics: Kinematics::Coupled(body.kinematics),
-        obstacle: RigidSurface::Plane { normal: [0.0, 1.0, 0.0] },
+        obstacle: RigidSurface::Plane { normal },
         initial_gap: body.gap,
         friction: CoulombFriction::new(contact.friction),
         sliding: Sliding::Line { across: [0.0, 0.0, 1.0] },
     };
-    let [mut along, mut across, mut both] = [0.0; 3];
+    let mut products = [[0.0; 3]; 3];
     contact_jacobian::each_column(structure, &built, &vec![0.0; structure.freedoms()], |freedom, column| {
         if structure.unknown_of[freedom].is_some() {
-            along += column[0] * column[0];
-            across += column[1] * column[1];
-            both += column[0] * column[1];
+            for (row, left) in products.iter_mut().zip(column) {
+                row.iter_mut().zip(column).for_each(|(sum, right)| *sum += left * right);
+            }
         }
     });
-    if along * across - both * both <= SINGLE_MOTION * (along + across).powi(2) && across > 0.0 {
-        (built.friction, built.sliding) = (CoulombFriction::new(0.0), Sliding::None);
+    if structure.dimension == 3 {
+        built.sliding = sliding_between(&products);
+    } else {
+        let ([along, both, _], across) = (products[0], products[1][1]);
+        if along * across - both * both <= SINGLE_MOTION * (along + across).powi(2) && across > 0.0 {
+            built.sliding = Sliding::None;
+        }
+    }
+    if built.sliding == Sliding::None {
+        built.friction = CoulombFriction::new(0.0);
     }
     built
+}
+
+/// The directions along which two surfaces in space can slide, by the sums of products of the columns of free components.
+fn sliding_between(products: &[[f64; 3]; 3]) -> Sliding {
+    let eigen = SymmetricEigen::new(Matrix3::from_fn(|row, column| products[row][column]));
+    let largest = eigen.eigenvalues.max();
+    let missing = |value: f64| largest > 0.0 && value <= MISSING_MOTION * largest;
+    let vectors = eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter());
+    let missing: Vec<Vector> =
+        vectors.filter(|(value, _)| missing(**value)).map(|(_, vector)| [vector[0], vector[1], 0.0]).collect();
+    match missing.as_slice() {
+        [] => Sliding::Plane,
+        [across] if size(across) > 0.5 => Sliding::Line { across: scaled(across, 1.0 / size(across)) },
+        [_] => Sliding::Plane,
+        _ => Sliding::None,
+    }
 }
 
 /// The directions in which a node can slide, given its supports.

@@ -33,3 +33,7 @@ pub(crate) const LARGEST_STIFFNESS_RATIO: f64 = 100.0;
 /// Squares of the areas between normal and tangential rows of a contact of bodies below this part of their sizes leave a
 /// single motion: the square of 1e-8, above which rows of round-off have other directions.
 pub(super) const SINGLE_MOTION: f64 = 1e-16;
+
+/// An eigenvalue of the products of the columns of two surfaces' motion that is at most this part of the largest one belongs
+/// to a motion that supports do not leave: above the round-off of eigenvalues.
+pub(super) const MISSING_MOTION: f64 = 1e-13;

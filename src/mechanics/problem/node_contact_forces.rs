@@ -133,6 +133,16 @@ pub fn free_directions(loading: Loading<'_>, contact: usize) -> Vec<Vector> {
             let unknowns = &structure.unknown_of[structure.translations_of(node)];
             axes.iter().zip(unknowns).filter(|(_, unknown)| unknown.is_some()).map(|(axis, _)| *axis).collect()
         }
-        None => axes.to_vec(),
+        None => {
+            let pair = &loading.contacts[contact];
+            let frame = pair.frame(&[0.0; 3]);
+            match pair.sliding {
+                // Supports may leave surfaces in space fewer motions than there are axes.
+                Sliding::None | Sliding::Line { .. } if structure.dimension == 3 => {
+                    std::iter::once(frame.normal).chain(frame.tangents).take(1 + pair.sliding.directions()).collect()
+                }
+                _ => axes.to_vec(),
+            }
+        }
     }
 }

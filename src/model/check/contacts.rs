@@ -87,13 +87,14 @@ pub(super) fn contacts(scope: &Scope, curves: &Curves, mistakes: &mut Mistakes) 
     }
 }
 
-/// The pairs of nodes that contacts of bodies couple: of each the three nodes on its own side with the surface that it
-/// touches, and the nodes of such a surface with each other.
+/// The pairs of nodes that contacts of bodies couple: of each the nodes on its own side, three in the plane and some nine in
+/// space, with the surface that it touches, and the nodes of such a surface with each other.
 fn coupled_pairs(scope: &Scope) -> usize {
     let nodes = |name: &str| scope.model.surfaces.get(name).map_or(0, |surface| surface.faces.len() + 1);
     let against: Vec<&str> = scope.model.contacts.iter().filter_map(|contact| contact.against.as_deref()).collect();
     let touched: HashSet<&str> = against.iter().copied().collect();
-    let by_contacts = against.iter().fold(0_usize, |sum, name| sum.saturating_add(3 * nodes(name)));
+    let own = if scope.model.dimension == 2 { 3 } else { 9 };
+    let by_contacts = against.iter().fold(0_usize, |sum, name| sum.saturating_add(own * nodes(name)));
     touched.into_iter().fold(by_contacts, |sum, name| sum.saturating_add(nodes(name).saturating_mul(nodes(name)) / 2))
 }
 

@@ -4,18 +4,24 @@ use crate::mechanics::contact::bodies::PlaneVector;
 use crate::mechanics::contact::bodies::mortar::MortarNode;
 use crate::mechanics::contact::bodies::node_to_surface::NodeToSurface;
 use crate::mechanics::contact::bodies::opposite_surface::{OppositeSurface, SurfaceError};
+use crate::mechanics::contact::bodies::space::mortar::MortarNodeInSpace;
+use crate::mechanics::contact::bodies::space::surface::{SurfaceInSpace, SurfaceInSpaceError};
 use crate::mechanics::contact::kinematics::CoupledKinematics;
+use crate::mechanics::contact::vector::{Vector, add, size};
 use crate::model::input::limits::PENETRATION_TOLERANCE;
 use crate::model::input::names::quoted;
 use crate::model::request::{Contact, ContactDiscretisation, Element, Model, PlaneCondition};
 use crate::model::solids::faces::{FaceMatch, surface_faces};
 use crate::resources::budget;
+use smallvec::SmallVec;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// A penetration at the start of up to this part of a face's length is that of the mesh: round bodies whose meshes do not
 /// match overlap by about an eighth of the square of an angle between faces.
 const MESHED_PENETRATION: f64 = 0.05;
+
+const NO_FACES: &str = "the surface has faces that are none";
 
 /// How often a surface is gone through for each of its contacts.
 const GONE_THROUGH: usize = 10;
@@ -24,9 +30,43 @@ const GONE_THROUGH: usize = 10;
 pub(crate) struct ContactSurfaces<'a> {
     model: &'a Model,
     unit: f64,
-    origin: PlaneVector,
-    surfaces: HashMap<&'a str, Result<Arc<OppositeSurface>, String>>,
+    origin: Vector,
+    surfaces: HashMap<&'a str, Result<TouchedSurface, String>>,
 }
+
+/// A surface that touches another.
+#[derive(Debug, Clone)]
+enum TouchedSurface {
+    Plane(Arc<OppositeSurface>),
+    Space(Arc<SurfaceInSpace>),
+}
+
+impl TouchedSurface {
+    fn nodes(&self) -> &[usize] {
+        match self {
+            Self::Plane(surface) => &surface.nodes,
+            Self::Space(surface) => &surface.nodes,
+        }
+    }
+
+    fn faces(&self) -> usize {
+        match self {
+            Self::Plane(surface) => surface.faces.len(),
+            Self::Space(surface) => surface.faces.len(),
+        }
+    }
+
+    /// Whether a point is on the free side of the undeformed surface.
+    fn is_free(&self, point: Vector) -> bool {
+        match self {
+            Self::Plane(surface) => surface.is_free([point[0], point[1]]),
+            Self::Space(surface) => surface.is_free(point),
+        }
+    }
+}
+
+/// The kinematics of a contact, its gap without displacements, and the size of a face.
+type BuiltKinematics = (Arc<dyn CoupledKinematics>, f64, f64);
 
 /// A contact of bodies.
 #[derive(Debug)]
@@ -49,28 +89,67 @@ impl<'a> ContactSurfaces<'a> {
         let named: HashSet<&str> =
             bodies.flat_map(|contact| [contact.surface.as_deref(), contact.against.as_deref()]).flatten().collect();
         let first = model.nodes.values().next();
-        let origin = first.map_or([0.0; 2], |place| [0, 1].map(|k| place.get(k).copied().unwrap_or(0.0)));
+        let origin = first.map_or([0.0; 3], |place| [0, 1, 2].map(|k| place.get(k).copied().unwrap_or(0.0)));
         let mut built = Self { model, unit, origin, surfaces: HashMap::new() };
         if !named.is_empty() {
             let all = model.surfaces.keys().zip(surface_faces(model));
             for (name, faces) in all.filter(|(name, _)| named.contains(name.as_str())) {
-                let surface = built.surface(&faces);
-                built.surfaces.insert(name.as_str(), surface.map(Arc::new));
+                let surface = match model.dimension {
+                    2 => built.surface(&faces).map(|surface| TouchedSurface::Plane(Arc::new(surface))),
+                    _ => built.surface_in_space(&faces).map(|surface| TouchedSurface::Space(Arc::new(surface))),
+                };
+                built.surfaces.insert(name.as_str(), surface);
             }
         }
         built
     }
 
     /// The position of a node from the origin, over the unit.
-    fn place(&self, node: usize) -> PlaneVector {
+    fn place(&self, node: usize) -> Vector {
         let place = self.model.nodes.get_index(node).map(|(_, place)| place.as_slice()).unwrap_or_default();
-        [0, 1].map(|k| (place.get(k).copied().unwrap_or(0.0) - self.origin[k]) / self.unit)
+        [0, 1, 2].map(|k| place.get(k).map_or(0.0, |value| (value - self.origin[k]) / self.unit))
+    }
+
+    fn place_in_plane(&self, node: usize) -> PlaneVector {
+        let [x, y, _] = self.place(node);
+        [x, y]
+    }
+
+    /// Whether a component of a node is supported.
+    fn is_held(&self, node: usize) -> bool {
+        let supports = self.model.nodes.get_index(node).and_then(|(name, _)| self.model.supports.get(name));
+        supports.is_some_and(|components| !components.is_empty())
+    }
+
+    fn name(&self, node: usize) -> String {
+        quoted(self.model.nodes.get_index(node).map_or("", |(name, _)| name.as_str())).to_string()
+    }
+
+    fn surface_in_space(&self, faces: &[FaceMatch]) -> Result<SurfaceInSpace, String> {
+        let mut corners: Vec<SmallVec<[usize; 4]>> = Vec::with_capacity(faces.len());
+        for face in faces {
+            let FaceMatch::Face(face) = face else { return Err(NO_FACES.to_owned()) };
+            if face.nodes.len() > 4 {
+                let why = "the surface has quadratic faces; surfaces that touch each other have faces of three or four \
+                           nodes: mesh the body with tetrahedron4 or hexahedron8";
+                return Err(why.to_owned());
+            }
+            corners.push(SmallVec::from_slice(&face.nodes));
+        }
+        SurfaceInSpace::new(&corners, |node| self.place(node)).map_err(|error| match &error {
+            SurfaceInSpaceError::Branches([one, other]) => format!(
+                "{error}, from {} to {}: the surface branches there; one face, or two, are expected",
+                self.name(*one),
+                self.name(*other)
+            ),
+            SurfaceInSpaceError::NoArea(nodes) => {
+                let names: Vec<String> = nodes.iter().map(|node| self.name(*node)).collect();
+                format!("{error}: {}", names.join(", "))
+            }
+        })
     }
 
     fn surface(&self, faces: &[FaceMatch]) -> Result<OppositeSurface, String> {
-        if self.model.dimension != 2 {
-            return Err("surfaces touch each other in the plane; in space not in this version".to_owned());
-        }
         let mut lines = Vec::with_capacity(faces.len());
         for face in faces {
             match face {
@@ -92,12 +171,11 @@ impl<'a> ContactSurfaces<'a> {
                     lines.push([last, first]);
                 }
                 FaceMatch::Side(nodes) => lines.push(*nodes),
-                FaceMatch::None | FaceMatch::Inside => return Err("the surface has faces that are none".to_owned()),
+                FaceMatch::None | FaceMatch::Inside => return Err(NO_FACES.to_owned()),
             }
         }
-        let name =
-            |node: usize| quoted(self.model.nodes.get_index(node).map_or("", |(name, _)| name.as_str())).to_string();
-        OppositeSurface::new(&lines, |node| self.place(node)).map_err(|error| match error {
+        let name = |node: usize| self.name(node);
+        OppositeSurface::new(&lines, |node| self.place_in_plane(node)).map_err(|error| match error {
             SurfaceError::Branches(node) => {
                 format!(
                     "{error} {}: the surface branches there; one face before and one after it are expected",
@@ -110,9 +188,9 @@ impl<'a> ContactSurfaces<'a> {
         })
     }
 
-    fn find(&self, name: &str, member: &'static str) -> Result<Arc<OppositeSurface>, BodyContactMistake> {
+    fn find(&self, name: &str, member: &'static str) -> Result<TouchedSurface, BodyContactMistake> {
         match self.surfaces.get(name) {
-            Some(Ok(surface)) => Ok(Arc::clone(surface)),
+            Some(Ok(surface)) => Ok(surface.clone()),
             Some(Err(mistake)) => Err((member, format!("{}: {mistake}", quoted(name)))),
             None => Err((member, format!("there is no surface {}", quoted(name)))),
         }
@@ -120,7 +198,7 @@ impl<'a> ContactSurfaces<'a> {
 
     /// Whether a node is on the free side of the surface that it touches, and its faces do not cross it: the mean of the gap
     /// may be negative there, where faces are much longer than those opposite.
-    fn is_apart(&self, node: usize, kinematics: &Arc<dyn CoupledKinematics>, opposite: &OppositeSurface) -> bool {
+    fn is_apart(&self, node: usize, kinematics: &Arc<dyn CoupledKinematics>, opposite: &TouchedSurface) -> bool {
         let is_clear = kinematics.clearance(&|_| 0.0).is_some_and(|(distance, _)| distance > 0.0);
         is_clear && opposite.is_free(self.place(node))
     }
@@ -132,63 +210,26 @@ impl<'a> ContactSurfaces<'a> {
     pub fn contact(&self, contact: &Contact, node: usize) -> Result<BodyContact, BodyContactMistake> {
         let against = contact.against.as_deref().unwrap_or_default();
         let opposite = self.find(against, "against")?;
-        let touched = Arc::clone(&opposite);
         // The whole surface is gone through several times.
-        budget::spend(GONE_THROUGH * opposite.faces.len());
+        budget::spend(GONE_THROUGH * opposite.faces());
         let name = || quoted(&contact.node).to_string();
-        if opposite.nodes.contains(&node) {
-            let why = format!(
-                "{} is a node of {}, too; a surface does not touch itself in this version",
-                name(),
-                quoted(against)
-            );
-            return Err(("against", why));
+        if opposite.nodes().contains(&node) {
+            return Err(("against", touches_itself(&name(), against)));
         }
-        let own = contact.surface.as_deref().map(|surface| self.find(surface, "surface")).transpose()?;
-        let size = |nodes: [PlaneVector; 2]| (nodes[0][0] - nodes[1][0]).hypot(nodes[0][1] - nodes[1][1]);
-        let (kinematics, gap, face): (Arc<dyn CoupledKinematics>, f64, f64) =
-            match contact.discretisation.unwrap_or_default() {
-                ContactDiscretisation::Mortar => {
-                    let own = own.ok_or_else(|| {
-                        let why = "a mortar contact is of a surface: name the `surface` of the node, or take \
-                               `\"discretisation\": \"node_to_surface\"`";
-                        ("node", why.to_owned())
-                    })?;
-                    let Some(at) = own.nodes.iter().position(|one| *one == node) else {
-                        let surface = quoted(contact.surface.as_deref().unwrap_or_default()).to_string();
-                        return Err(("node", format!("{} is no node of {surface}", name())));
-                    };
-                    let beside = own.faces_at(at);
-                    let neighbours = [0, 1].map(|end| beside[end].map(|face| own.nodes[own.faces[face].nodes[end]]));
-                    if let Some(shared) = neighbours.into_iter().flatten().find(|node| opposite.nodes.contains(node)) {
-                        let shared = self.model.nodes.get_index(shared).map_or("", |(name, _)| name.as_str());
-                        let why = format!(
-                            "{} is a node of both surfaces; a surface does not touch itself in this version",
-                            quoted(shared)
-                        );
-                        return Err(("against", why));
-                    }
-                    let kinematics = MortarNode::new(node, neighbours, opposite, |node| self.place(node));
-                    let gap = kinematics.initial_gap();
-                    let sizes =
-                        neighbours.into_iter().flatten().map(|other| size([self.place(node), self.place(other)]));
-                    let face = sizes.fold(f64::INFINITY, f64::min);
-                    (Arc::new(kinematics), gap, face)
-                }
-                ContactDiscretisation::NodeToSurface => {
-                    let sizes = opposite.faces.iter().map(|face| size(face.nodes.map(|node| opposite.places[node])));
-                    let face = sizes.fold(f64::INFINITY, f64::min);
-                    let kinematics = NodeToSurface::new(node, self.place(node), opposite);
-                    let gap = kinematics.initial_gap();
-                    (Arc::new(kinematics), gap, face)
-                }
-            };
+        let (kinematics, gap, face) = match contact.discretisation.unwrap_or_default() {
+            ContactDiscretisation::Mortar => self.mortar(contact, node, &opposite)?,
+            ContactDiscretisation::NodeToSurface => self.node_to_surface(node, &opposite)?,
+        };
+        let own = &kinematics.nodes()[..kinematics.own_nodes()];
+        if let Some(shared) = own.iter().find(|node| opposite.nodes().contains(node)) {
+            return Err(("against", touches_itself(&self.name(*shared), against)));
+        }
         if kinematics.beyond_end(&|_| 0.0).is_some() {
             // Past the end of the surface there is no contact yet.
             return Ok(BodyContact { kinematics, gap, overlap: 0.0 });
         }
-        let is_behind = !touched.is_free(self.place(node)) && gap.abs() > MESHED_PENETRATION * face;
-        let is_deep = gap < -MESHED_PENETRATION * face && !self.is_apart(node, &kinematics, &touched);
+        let is_behind = !opposite.is_free(self.place(node)) && gap.abs() > MESHED_PENETRATION * face;
+        let is_deep = gap < -MESHED_PENETRATION * face && !self.is_apart(node, &kinematics, &opposite);
         if !gap.is_finite() || is_behind || is_deep {
             let found = if is_behind { -gap.abs() } else { gap } * self.unit;
             let why = format!(
@@ -205,4 +246,67 @@ impl<'a> ContactSurfaces<'a> {
         let overlap = if gap < -PENETRATION_TOLERANCE - 4.0 * f64::EPSILON * reach { -gap } else { 0.0 };
         Ok(BodyContact { kinematics, gap: if closed { 0.0 } else { gap }, overlap })
     }
+
+    /// A node with the faces of its surface.
+    fn mortar(
+        &self,
+        contact: &Contact,
+        node: usize,
+        opposite: &TouchedSurface,
+    ) -> Result<BuiltKinematics, BodyContactMistake> {
+        let own = contact.surface.as_deref().map(|surface| self.find(surface, "surface")).transpose()?;
+        let own = own.ok_or_else(|| {
+            let why = "a mortar contact is of a surface: name the `surface` of the node, or take \
+                       `\"discretisation\": \"node_to_surface\"`";
+            ("node", why.to_owned())
+        })?;
+        let Some(at) = own.nodes().iter().position(|one| *one == node) else {
+            let surface = quoted(contact.surface.as_deref().unwrap_or_default()).to_string();
+            return Err(("node", format!("{} is no node of {surface}", self.name(node))));
+        };
+        let place = self.place(node);
+        let away = |other: usize| size(&add(&self.place(other), -1.0, &place));
+        match (own, opposite) {
+            (TouchedSurface::Plane(own), TouchedSurface::Plane(opposite)) => {
+                let beside = own.faces_at(at);
+                let neighbours = [0, 1].map(|end| beside[end].map(|face| own.nodes[own.faces[face].nodes[end]]));
+                let place = |node: usize| self.place_in_plane(node);
+                let kinematics = MortarNode::new(node, neighbours, Arc::clone(opposite), place);
+                let gap = kinematics.initial_gap();
+                let face = neighbours.into_iter().flatten().map(away).fold(f64::INFINITY, f64::min);
+                Ok((Arc::new(kinematics), gap, face))
+            }
+            (TouchedSurface::Space(own), TouchedSurface::Space(opposite)) => {
+                let is_held = |node: usize| self.is_held(node);
+                let kinematics = MortarNodeInSpace::new(at, &own, Arc::clone(opposite), is_held);
+                let gap = kinematics.initial_gap();
+                let others = &kinematics.nodes()[1..kinematics.own_nodes()];
+                let face = others.iter().copied().map(away).fold(f64::INFINITY, f64::min);
+                Ok((Arc::new(kinematics), gap, face))
+            }
+            // All surfaces of a model are of its dimension.
+            _ => Err(("surface", NO_FACES.to_owned())),
+        }
+    }
+
+    /// A node by itself.
+    fn node_to_surface(&self, node: usize, opposite: &TouchedSurface) -> Result<BuiltKinematics, BodyContactMistake> {
+        let TouchedSurface::Plane(opposite) = opposite else {
+            let why = "in space surfaces touch each other by mortar contacts alone, in this version: leave \
+                       `discretisation` out and name the `surface` of the node";
+            return Err(("discretisation", why.to_owned()));
+        };
+        let length = |nodes: [usize; 2]| {
+            let [first, last] = nodes.map(|node| opposite.places[node]);
+            (first[0] - last[0]).hypot(first[1] - last[1])
+        };
+        let face = opposite.faces.iter().map(|face| length(face.nodes)).fold(f64::INFINITY, f64::min);
+        let kinematics = NodeToSurface::new(node, self.place_in_plane(node), Arc::clone(opposite));
+        let gap = kinematics.initial_gap();
+        Ok((Arc::new(kinematics), gap, face))
+    }
+}
+
+fn touches_itself(node: &str, against: &str) -> String {
+    format!("{node} is a node of {}, too; a surface does not touch itself in this version", quoted(against))
 }

@@ -3,8 +3,10 @@
 mod arches;
 mod bad_bodies;
 mod blocks;
+mod bricks;
 mod hertz;
 mod random_pairs;
+mod spheres;
 mod tube;
 
 use serde_json::{Map, Value, json};
@@ -78,13 +80,21 @@ pub fn support(model: &mut Value, nodes: &[String], components: &[&str]) {
     for node in nodes {
         let held = model["supports"].get(node).cloned().unwrap_or(json!([]));
         let mut held: Vec<Value> = held.as_array().cloned().unwrap_or_default();
-        held.extend(components.iter().map(|component| json!(component)));
-        held.dedup();
+        for component in components.iter().map(|component| json!(component)) {
+            if !held.contains(&component) {
+                held.push(component);
+            }
+        }
         model["supports"][node] = json!(held);
     }
 }
 
 /// Prescribed displacements of nodes.
 pub fn moved(nodes: &[String], motion: [f64; 2]) -> Value {
+    nodes.iter().map(|node| (node.clone(), json!(motion))).collect::<Map<_, _>>().into()
+}
+
+/// Prescribed displacements of nodes in space.
+pub fn moved_in_space(nodes: &[String], motion: [f64; 3]) -> Value {
     nodes.iter().map(|node| (node.clone(), json!(motion))).collect::<Map<_, _>>().into()
 }

@@ -2,6 +2,7 @@
 
 use crate::check::measure::numbers::{MeasuredVector, padded};
 use crate::model::request::{Element, Model};
+use crate::model::solids::faces::{FaceMatch, surface_faces};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -21,9 +22,14 @@ pub(in crate::check::measure) struct TouchedSurfaces<'a> {
     /// Faces with their free side on the left, by numbers of nodes.
     pub(super) lines: HashMap<&'a str, Vec<[usize; 2]>>,
     pub(super) faces: HashMap<&'a str, Arc<[OppositeFace]>>,
+    /// Faces in space, their nodes counter-clockwise as seen from the free side, and the triangles of those that are touched.
+    faces_in_space: HashMap<&'a str, Vec<Vec<usize>>>,
+    pub(super) triangles: HashMap<&'a str, Arc<[MeasuredTriangle]>>,
     /// Undeformed places of all nodes.
     pub(super) places: Arc<[MeasuredVector]>,
     pub(super) no_displacements: Vec<MeasuredVector>,
+    /// Whether a component of a node is supported.
+    held: Vec<bool>,
 }
 
 impl<'a> TouchedSurfaces<'a> {
@@ -36,8 +42,11 @@ impl<'a> TouchedSurfaces<'a> {
             return Self {
                 lines: HashMap::new(),
                 faces: HashMap::new(),
+                faces_in_space: HashMap::new(),
+                triangles: HashMap::new(),
                 places: Arc::new([]),
                 no_displacements: Vec::new(),
+                held: Vec::new(),
             };
         }
         // A solid has its corners counter-clockwise: seen along its boundary, the free side is on the right.
@@ -63,7 +72,37 @@ impl<'a> TouchedSurfaces<'a> {
         let touched = lines.iter().filter(|(name, _)| against.contains(*name));
         let faces = touched.map(|(name, lines)| (*name, in_order(lines, &places).into())).collect();
         let no_displacements = vec![MeasuredVector::zeros(); places.len()];
-        Self { lines, faces, places, no_displacements }
+        let mut faces_in_space: HashMap<&str, Vec<Vec<usize>>> = HashMap::new();
+        if model.dimension == 3 {
+            let all = model.surfaces.keys().zip(surface_faces(model));
+            for (name, faces) in all.filter(|(name, _)| named.contains(name.as_str())) {
+                let nodes = faces.into_iter().filter_map(|face| match face {
+                    FaceMatch::Face(face) => Some(face.nodes),
+                    _ => None,
+                });
+                faces_in_space.insert(name.as_str(), nodes.collect());
+            }
+        }
+        let touched = faces_in_space.iter().filter(|(name, _)| against.contains(*name));
+        let triangles = touched.map(|(name, faces)| (*name, triangles(faces).into())).collect();
+        let is_held = |name: &String| model.supports.get(name).is_some_and(|components| !components.is_empty());
+        let held = model.nodes.keys().map(is_held).collect();
+        Self { lines, faces, faces_in_space, triangles, places, no_displacements, held }
+    }
+
+    /// Whether a node of a face is supported.
+    pub(super) fn is_held(&self, face: &[usize]) -> bool {
+        face.iter().any(|node| self.held[*node])
+    }
+
+    /// The faces of a surface at a node, each from this node on.
+    pub(super) fn around(&self, surface: &str, node: usize) -> Vec<Vec<usize>> {
+        let all = self.faces_in_space.get(surface).into_iter().flatten();
+        let from_node = |face: &Vec<usize>| {
+            let first = face.iter().position(|other| *other == node)?;
+            Some(face.iter().cycle().skip(first).take(face.len()).copied().collect())
+        };
+        all.filter_map(from_node).collect()
     }
 }
 
@@ -108,4 +147,75 @@ fn in_order(lines: &[[usize; 2]], places: &[MeasuredVector]) -> Vec<OppositeFace
         chain,
     })
     .collect()
+}
+
+/// A triangle of a face in space: a face of three nodes, or a quarter of one of four around its centre.
+#[derive(Debug, Clone)]
+pub(super) struct MeasuredTriangle {
+    /// The nodes of each corner, with their shares.
+    pub corners: [Vec<(usize, f64)>; 3],
+    /// Whether the surface ends at the edge from each corner to the next.
+    pub ends: [bool; 3],
+    /// The nodes of its face.
+    pub face: Vec<usize>,
+    /// Number of the connected part of the surface.
+    pub part: usize,
+}
+
+impl MeasuredTriangle {
+    /// The triangles of a face whose nodes run counter-clockwise as seen from the free side.
+    pub fn of_face(face: &[usize], ends: &[bool], part: usize) -> Vec<Self> {
+        let count = face.len();
+        let node = |at: usize| vec![(face[at % count], 1.0)];
+        let face_nodes = face.to_vec();
+        if count == 3 {
+            let ends = [ends[0], ends[1], ends[2]];
+            return vec![Self { corners: [node(0), node(1), node(2)], ends, face: face_nodes, part }];
+        }
+        let centre: Vec<(usize, f64)> = face.iter().map(|node| (*node, 1.0 / count as f64)).collect();
+        let quarter = |at: usize| Self {
+            corners: [node(at), node(at + 1), centre.clone()],
+            ends: [ends[at], false, false],
+            face: face_nodes.clone(),
+            part,
+        };
+        (0..count).map(quarter).collect()
+    }
+
+    /// The places of the corners.
+    pub fn places(&self, position: &dyn Fn(usize) -> MeasuredVector) -> [MeasuredVector; 3] {
+        let place = |corner: &Vec<(usize, f64)>| corner.iter().map(|(node, share)| position(*node) * *share).sum();
+        [place(&self.corners[0]), place(&self.corners[1]), place(&self.corners[2])]
+    }
+}
+
+/// The triangles of the faces of a surface in space.
+fn triangles(faces: &[Vec<usize>]) -> Vec<MeasuredTriangle> {
+    let edges = |face: &Vec<usize>| -> Vec<[usize; 2]> {
+        (0..face.len()).map(|k| [face[k], face[(k + 1) % face.len()]]).collect()
+    };
+    let by_edge: HashMap<[usize; 2], usize> = faces
+        .iter()
+        .enumerate()
+        .flat_map(|(index, face)| edges(face).into_iter().map(move |edge| (edge, index)))
+        .collect();
+    // Each face takes the smallest number among those it is connected with, until none changes.
+    let mut parts: Vec<usize> = (0..faces.len()).collect();
+    loop {
+        let before = parts.clone();
+        for (index, face) in faces.iter().enumerate() {
+            for beside in edges(face).into_iter().filter_map(|[one, other]| by_edge.get(&[other, one])) {
+                let least = parts[index].min(parts[*beside]);
+                (parts[index], parts[*beside]) = (least, least);
+            }
+        }
+        if before == parts {
+            break;
+        }
+    }
+    let all = faces.iter().zip(parts).flat_map(|(face, part)| {
+        let ends: Vec<bool> = edges(face).iter().map(|[one, other]| !by_edge.contains_key(&[*other, *one])).collect();
+        MeasuredTriangle::of_face(face, &ends, part)
+    });
+    all.collect()
 }

@@ -1,4 +1,4 @@
-//! Contact of a node of one body with a surface of another, in the plane.
+//! Contact of a node of one body with a surface of another; in space see [`space`].
 //!
 //! ```text
 //! g = N·(x - Σ_l w_l x_l),      ẋ_t = λ d/dt Σ_l w_l S_l,      Σ_l w_l = 1
@@ -22,6 +22,7 @@ pub mod mortar;
 pub mod node_to_surface;
 pub mod opposite_surface;
 mod second_derivatives;
+pub mod space;
 #[cfg(test)]
 mod tests;
 mod tolerances;

@@ -5,7 +5,7 @@ import { fromSheet } from "./plot-style.js";
 import { counterpart } from "./quantities.js";
 import { contactWords } from "./structure-nodes.js";
 
-const { plus, times, length, unit } = vector;
+const { plus, times, dot, cross, length, unit } = vector;
 /** Lengths of arrows and cones, as parts of the extent. */
 const ARROW = 0.22;
 const CONE = 0.16;
@@ -43,7 +43,33 @@ export class ContactDrawing {
   frame(contact) {
     const { node, obstacle } = contact;
     const touched = this.model.obstacles?.[obstacle];
-    return touched ? frame(touched, this.now.get(node), this.moved.get(obstacle)) : frameOfReaction(contact);
+    if (touched) return frame(touched, this.now.get(node), this.moved.get(obstacle));
+    return this.model.dimension === 3 ? this.frameOfFaces(contact) : frameOfReaction(contact);
+  }
+
+  /** The frame of a contact of bodies in space: across the faces at the node, and along the first edge of the first of them. */
+  frameOfFaces({ node, obstacle, reaction }) {
+    const own = (this.model.contacts ?? []).find((item) => item.against === obstacle && item.surface !== undefined
+      && this.facesAt(item.surface, node).length > 0);
+    const faces = own ? this.facesAt(own.surface, node) : [];
+    const zero = times(reaction, 0);
+    if (!faces.length) return { normal: zero, tangents: [zero, zero] };
+    const edges = faces.map((face) => face.slice(1).map((to) => plus(this.now.get(to), this.now.get(node), -1)));
+    const area = edges.flatMap((from) => from.slice(1).map((to, before) => cross(from[before], to)))
+      .reduce((sum, part) => plus(sum, part), zero);
+    // Whichever way the faces run, the other body presses the node back into its own.
+    const isOutside = dot(area, reaction) < 0;
+    const outside = unit(isOutside ? area : times(area, -1));
+    const edge = edges[0].at(isOutside ? 0 : -1);
+    const along = unit(plus(edge, outside, -dot(edge, outside)));
+    return { normal: times(outside, -1), tangents: [along, cross(outside, along)] };
+  }
+
+  /** The faces of a surface at a node whose nodes are all drawn, each from this node on. */
+  facesAt(surface, node) {
+    const faces = this.model.surfaces?.[surface]?.faces ?? [];
+    return faces.filter((face) => face.includes(node) && face.every((other) => this.now.has(other)))
+      .map((face) => [...face.slice(face.indexOf(node)), ...face.slice(0, face.indexOf(node))]);
   }
 
   /** A vector of its components along the tangents. */

@@ -1,0 +1,672 @@
+//! A node with its faces in front of an opposite surface.
+
+use crate::mechanics::contact::bodies::space::overlap::Overlap;
+use crate::mechanics::contact::bodies::space::projection::{Projected, TriangleFrame};
+use crate::mechanics::contact::bodies::space::second_derivatives;
+use crate::mechanics::contact::bodies::space::surface::{
+    FaceInSpace, FaceTriangle, SurfaceInSpace, SurfacePoint, area_vector, ball_around, distance_from_triangle,
+    distance_of_triangles,
+};
+use crate::mechanics::contact::bodies::tolerances::{DEEPEST, LAST_COVERED, LEAST_COVERED};
+use crate::mechanics::contact::kinematics::{CoupledKinematics, LocalDisplacements};
+use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
+use nalgebra::{DMatrix, DVector};
+use smallvec::SmallVec;
+use std::f64::consts::SQRT_2;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A node with its faces, in front of an opposite surface.
+#[derive(Debug)]
+pub struct MortarNodeInSpace {
+    /// The node, the other nodes of its faces, the nodes of the opposite surface.
+    nodes: Vec<usize>,
+    faces: Vec<OwnFace>,
+    /// Undeformed positions of the node and of the other nodes of its faces.
+    places: Vec<Vector>,
+    opposite: Arc<SurfaceInSpace>,
+    /// Gap without displacements.
+    start: f64,
+    /// The last states that were asked for. A state depends on its displacements alone.
+    recent: Mutex<RecentStates>,
+}
+
+/// A face at the node.
+#[derive(Debug)]
+struct OwnFace {
+    /// The node comes first; nodes are indices into those of the contact.
+    face: FaceInSpace,
+    /// Undeformed areas of the triangles of the face, twice.
+    areas: SmallVec<[f64; 4]>,
+    /// The shape function of the node and its dual function at the corners of the triangles.
+    functions: SmallVec<[[[f64; 3]; 2]; 4]>,
+    /// Whether one of its nodes is supported. By the dual function of such a node friction would have hardly any motion to
+    /// act on; slips are weighted by shape functions there.
+    is_held: bool,
+}
+
+/// How far a face is covered.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FaceCover {
+    /// The share of the dual function in the function of the node.
+    dual: f64,
+    /// The first two derivatives of that by the covered area.
+    pub slopes: [f64; 2],
+}
+
+/// The parts of the node's faces that the opposite surface covers.
+pub(super) struct Covered<'a> {
+    pub parts: Vec<CoveredPart<'a>>,
+    /// By the faces at the node.
+    pub faces: SmallVec<[FaceCover; 8]>,
+    /// The share of the faces that is covered, as the shape function of the node counts it.
+    share: f64,
+}
+
+/// The last states of a node, each with its displacements.
+#[derive(Debug, Default)]
+struct RecentStates {
+    states: Vec<(Vec<f64>, Arc<NodeState>)>,
+    /// The place of the next one.
+    next: usize,
+}
+
+/// Below this share of its area that is covered, a face has means by shape functions alone.
+const LEAST_DUAL: f64 = 0.5;
+
+/// How many states are kept: the anchor of an increment, the iterate, and those beside.
+const KEPT_STATES: usize = 4;
+
+/// A triangle of a face at the node and a triangle of the opposite surface that covers a part of it.
+#[derive(Clone, Copy)]
+pub(super) struct CoveredPart<'a> {
+    pub own: FaceTriangle<'a>,
+    pub frame: TriangleFrame,
+    pub opposite: FaceTriangle<'a>,
+    pub projected: [Projected; 3],
+    /// Weighted by the function of the node for gaps, and by that for slips.
+    pub overlap: Overlap,
+    pub slip: Overlap,
+    /// Undeformed area of the own triangle, twice.
+    pub scale: f64,
+    /// The face of the own triangle, as a place among those at the node.
+    pub face: usize,
+    /// The shape function of the node and its dual function at the own corners.
+    functions: [[f64; 3]; 2],
+    /// Whether slips are weighted by the shape function.
+    slips_by_shape: bool,
+}
+
+/// A state of the node.
+#[derive(Debug)]
+struct NodeState {
+    /// The mean gap; where nothing is opposite, the distance of the node from the surface.
+    gap: f64,
+    /// The share of the faces that is covered.
+    covered: f64,
+    /// The nodes that move the contact, with the columns of their three displacements; none where nothing is opposite.
+    columns: Vec<(usize, [Vector; 3])>,
+    /// Tangents and normal.
+    frame: [Vector; 3],
+}
+
+/// Means at the node: of the gap, and of the place that the node is in front of; with the areas `∫ φ dA` of both.
+pub(super) struct NodalMeans {
+    pub area: f64,
+    pub gap: f64,
+    pub slip_area: f64,
+    pub place: Vector,
+}
+
+/// The tangents of a node, with what they depend on: `t_1` is the part of `edge` in the plane across `normal`, a sum of
+/// area vectors, and `t_2 = n × t_1`.
+pub(super) struct NodalTangents {
+    normal: Vector,
+    edge: Vector,
+    pub tangents: [Vector; 2],
+}
+
+impl NodalTangents {
+    fn new(normal: Vector, edge: Vector) -> Self {
+        let along = unit(&normal);
+        let first = unit(&add(&edge, -dot(&along, &edge), &along));
+        Self { normal, edge, tangents: [first, cross(&along, &first)] }
+    }
+
+    /// The changes of both tangents with changes of the normal and of the edge.
+    fn changes(&self, normal: &Vector, edge: &Vector) -> [Vector; 2] {
+        let across = |vector: &Vector, unit: &Vector| add(vector, -dot(unit, vector), unit);
+        let along = unit(&self.normal);
+        let turned = scaled(&across(normal, &along), 1.0 / size(&self.normal));
+        let flat = add(&self.edge, -dot(&along, &self.edge), &along);
+        let change = add(edge, -dot(&turned, &self.edge) - dot(&along, edge), &along);
+        let change = add(&change, -dot(&along, &self.edge), &turned);
+        let first = scaled(&across(&change, &self.tangents[0]), 1.0 / size(&flat));
+        [first, add(&cross(&turned, &self.tangents[0]), 1.0, &cross(&along, &first))]
+    }
+}
+
+impl MortarNodeInSpace {
+    /// The kinematics of the node `own` of `surface` (an index into its nodes) in front of an opposite surface; `is_held` says
+    /// of a node of the structure whether it is supported.
+    pub fn new(
+        own: usize,
+        surface: &SurfaceInSpace,
+        opposite: Arc<SurfaceInSpace>,
+        is_held: impl Fn(usize) -> bool,
+    ) -> Self {
+        let (mut local, mut faces) = (vec![own], Vec::new());
+        for face in surface.faces_at(own) {
+            let first = face.nodes.iter().position(|node| *node == own).unwrap_or(0);
+            let rotated = face.nodes.iter().cycle().skip(first).take(face.nodes.len());
+            let nodes = rotated.map(|node| {
+                local.iter().position(|met| met == node).unwrap_or_else(|| {
+                    local.push(*node);
+                    local.len() - 1
+                })
+            });
+            let nodes: SmallVec<[usize; 4]> = nodes.collect();
+            let ends = nodes.iter().map(|_| false).collect();
+            faces.push(FaceInSpace { nodes, ends, part: 0 });
+        }
+        let places: Vec<Vector> = local.iter().map(|node| surface.places[*node]).collect();
+        let faces = faces.into_iter().map(|face| {
+            let is_held = face.nodes.iter().any(|node| is_held(surface.nodes[local[*node]]));
+            OwnFace::new(face, &places, is_held)
+        });
+        let faces = faces.collect();
+        let nodes = local.iter().map(|node| surface.nodes[*node]).chain(opposite.nodes.iter().copied()).collect();
+        let mut node = Self { nodes, faces, places, opposite, start: 0.0, recent: Mutex::new(RecentStates::default()) };
+        node.start = node.state(&|_| 0.0).gap;
+        node
+    }
+
+    /// The gap without displacements.
+    pub fn initial_gap(&self) -> f64 {
+        self.start
+    }
+
+    /// The number of nodes of the own surface.
+    pub(super) fn own(&self) -> usize {
+        self.places.len()
+    }
+
+    /// The present position of one of the own nodes.
+    fn position(&self, displacement: LocalDisplacements<'_>, node: usize) -> Vector {
+        let place = &self.places[node];
+        [0, 1, 2].map(|k| place[k] + displacement(3 * node + k))
+    }
+
+    fn corners(&self, displacement: LocalDisplacements<'_>, face: &FaceInSpace) -> SmallVec<[Vector; 4]> {
+        face.nodes.iter().map(|node| self.position(displacement, *node)).collect()
+    }
+
+    /// The distance of the node from the opposite surface, and the connected part that is nearest.
+    fn nearest(&self, displacement: LocalDisplacements<'_>) -> (f64, usize) {
+        let own = self.position(displacement, 0);
+        let mut best = (f64::INFINITY, 0);
+        for face in &self.opposite.faces {
+            let places = self.opposite.present(face, self.places.len(), displacement);
+            let (center, radius) = ball_around(&places);
+            if size(&add(&own, -1.0, &center)) - radius >= best.0 {
+                continue;
+            }
+            for triangle in face.triangles(&places, 0) {
+                let distance = distance_from_triangle(&own, &triangle.points.map(|point| point.place));
+                best = if distance < best.0 { (distance, face.part) } else { best };
+            }
+        }
+        best
+    }
+
+    /// The parts of the node's faces that the opposite surface covers; none where they are next to nothing.
+    pub(super) fn covered(&self, displacement: LocalDisplacements<'_>) -> Covered<'_> {
+        let first = self.places.len();
+        let several = self.opposite.faces.iter().any(|face| face.part > 0);
+        let part = if several { self.nearest(displacement).1 } else { 0 };
+        let opposite: Vec<_> = (self.opposite.faces.iter().filter(|face| face.part == part))
+            .map(|face| {
+                let places = self.opposite.present(face, first, displacement);
+                let (center, radius) = ball_around(&places);
+                (face, places, center, radius)
+            })
+            .collect();
+        let mut parts = Vec::with_capacity(64);
+        let mut faces = SmallVec::new();
+        let (mut covered, mut whole) = (0.0, 0.0);
+        for (number, own_face) in self.faces.iter().enumerate() {
+            let corners = self.corners(displacement, &own_face.face);
+            let (center, radius) = ball_around(&corners);
+            let normal = unit(&area_vector(&corners));
+            let size_of_face = size(&area_vector(&corners)).sqrt();
+            let beside = opposite.iter().filter(|(_, _, other, reach)| {
+                let from = add(other, -1.0, &center);
+                let height = dot(&from, &normal);
+                // The triangles of a warped face have normals of their own: they turn by less than this.
+                size(&add(&from, -height, &normal)) <= radius + reach + 0.5 * height.abs()
+                    && height + reach >= -DEEPEST * size_of_face
+            });
+            let beside: SmallVec<[_; 16]> = beside.collect();
+            let begin = parts.len();
+            let triangles = own_face.face.triangles(&corners, 0);
+            for ((own, scale), functions) in triangles.into_iter().zip(&own_face.areas).zip(&own_face.functions) {
+                let Some(frame) = TriangleFrame::new(&own.points.map(|point| point.place)) else { continue };
+                whole += scale * functions[0].iter().sum::<f64>() / 6.0;
+                for (other, places, ..) in &beside {
+                    for opposite in other.triangles(places, first) {
+                        let projected = opposite.points.map(|point| frame.project(&point.place));
+                        let highest = projected.iter().map(|point| point.height).fold(f64::NEG_INFINITY, f64::max);
+                        if highest < -DEEPEST * size_of_face {
+                            continue;
+                        }
+                        let Some(overlap) = Overlap::new(projected.map(|point| point.xi)) else { continue };
+                        parts.push(CoveredPart {
+                            own,
+                            frame,
+                            opposite,
+                            projected,
+                            overlap,
+                            slip: overlap,
+                            scale: *scale,
+                            face: number,
+                            functions: *functions,
+                            slips_by_shape: own_face.is_held,
+                        });
+                    }
+                }
+            }
+            let of_face = &mut parts[begin..];
+            let cover = own_face.cover(of_face.iter().map(|part| part.area()).sum());
+            for part in of_face {
+                let by_shape = part.overlap.weighted(part.functions[0]);
+                part.overlap = by_shape;
+                covered += part.area();
+                part.overlap = part.overlap.weighted(cover.blended(&part.functions));
+                part.slip = if part.slips_by_shape { by_shape } else { part.overlap };
+            }
+            faces.push(cover);
+        }
+        let share = covered / whole;
+        let parts = if share > LEAST_COVERED { parts } else { Vec::new() };
+        Covered { parts, faces, share }
+    }
+
+    /// The present position of one of the contact's nodes.
+    fn place_of(&self, displacement: LocalDisplacements<'_>, node: usize) -> Vector {
+        if node < self.places.len() {
+            return self.position(displacement, node);
+        }
+        let place = &self.opposite.places[node - self.places.len()];
+        [0, 1, 2].map(|k| place[k] + displacement(3 * node + k))
+    }
+
+    /// The state at displacements, kept or computed.
+    fn state(&self, displacement: LocalDisplacements<'_>) -> Arc<NodeState> {
+        let values: Vec<f64> = (0..3 * self.nodes.len()).map(displacement).collect();
+        let same = |kept: &[f64]| kept.iter().zip(&values).all(|(one, other)| one.to_bits() == other.to_bits());
+        {
+            let recent = self.recent.lock().unwrap_or_else(PoisonError::into_inner);
+            if let Some((_, state)) = recent.states.iter().find(|(kept, _)| same(kept)) {
+                return Arc::clone(state);
+            }
+        }
+        let state = Arc::new(self.computed(displacement));
+        let mut recent = self.recent.lock().unwrap_or_else(PoisonError::into_inner);
+        let next = recent.next;
+        let entry = (values, Arc::clone(&state));
+        match recent.states.get_mut(next) {
+            Some(kept) => *kept = entry,
+            None => recent.states.push(entry),
+        }
+        recent.next = (next + 1) % KEPT_STATES;
+        state
+    }
+
+    fn computed(&self, displacement: LocalDisplacements<'_>) -> NodeState {
+        let covered = self.covered(displacement);
+        let tangents = self.tangents(displacement).tangents;
+        let frame = [tangents[0], tangents[1], cross(&tangents[0], &tangents[1])];
+        let Some(means) = NodalMeans::new(&covered.parts) else {
+            return NodeState { gap: self.nearest(displacement).0, covered: covered.share, columns: Vec::new(), frame };
+        };
+        let mut columns: Vec<(usize, [Vector; 3])> = Vec::new();
+        let mut add_row = |part: &CoveredPart<'_>, row: usize, gradient: &[Vector; 6], factor: f64| {
+            part.each_node(gradient, &mut |node, vector| {
+                let at = columns.iter().position(|(met, _)| *met == node).unwrap_or_else(|| {
+                    columns.push((node, [[0.0; 3]; 3]));
+                    columns.len() - 1
+                });
+                (0..3).for_each(|k| columns[at].1[k][row] += factor * vector[k]);
+            });
+        };
+        let inverse = 1.0 / means.area;
+        for part in &covered.parts {
+            let [first, second] = part.along(&means, &tangents);
+            add_row(part, 0, &first, 1.0 / means.slip_area);
+            add_row(part, 1, &second, 1.0 / means.slip_area);
+            add_row(part, 2, &part.gradient(&part.heights_from(means.gap)), inverse);
+        }
+        for (face, cover) in covered.faces.iter().enumerate().filter(|(_, cover)| cover.slopes[0] != 0.0) {
+            let by_dual = covered.by_dual(face, means.gap);
+            for part in covered.of_face(face) {
+                add_row(part, 2, &part.plain().gradient_of_area(), inverse * by_dual * cover.slopes[0]);
+            }
+        }
+        NodeState { gap: means.gap, covered: covered.share, columns, frame }
+    }
+
+    pub(super) fn tangents(&self, displacement: LocalDisplacements<'_>) -> NodalTangents {
+        let vectors = self.faces.iter().map(|own| area_vector(&self.corners(displacement, &own.face)));
+        let normal = vectors.fold([0.0; 3], |sum, vector| add(&sum, 1.0, &vector));
+        let end = self.faces.first().map_or(0, |own| own.face.nodes[1]);
+        let edge = add(&self.position(displacement, end), -1.0, &self.position(displacement, 0));
+        NodalTangents::new(normal, edge)
+    }
+
+    /// Calls `each` with the degrees of freedom of the own nodes and the changes of the tangents with them.
+    pub(super) fn each_change_of_tangents(
+        &self,
+        displacement: LocalDisplacements<'_>,
+        each: &mut dyn FnMut(usize, [Vector; 2]),
+    ) {
+        let tangents = self.tangents(displacement);
+        let end = self.faces.first().map_or(0, |own| own.face.nodes[1]);
+        let mut normals = vec![[[0.0; 3]; 3]; self.places.len()];
+        for OwnFace { face, .. } in &self.faces {
+            let (corners, count) = (self.corners(displacement, face), face.nodes.len());
+            for (k, node) in face.nodes.iter().enumerate() {
+                // The area vector is half the sum of the products of each place with the next.
+                let chord = add(&corners[(k + 1) % count], -1.0, &corners[(k + count - 1) % count]);
+                for (axis, change) in normals[*node].iter_mut().enumerate() {
+                    let mut moved = [0.0; 3];
+                    moved[axis] = 0.5;
+                    *change = add(change, 1.0, &cross(&moved, &chord));
+                }
+            }
+        }
+        for (node, changes) in normals.iter().enumerate() {
+            for (axis, normal) in changes.iter().enumerate() {
+                let mut edge = [0.0; 3];
+                edge[axis] = f64::from(u8::from(node == end)) - f64::from(u8::from(node == 0));
+                each(3 * node + axis, tangents.changes(normal, &edge));
+            }
+        }
+    }
+
+    /// The distance of the node's faces from the opposite surface.
+    fn distance(&self, displacement: LocalDisplacements<'_>) -> f64 {
+        let first = self.places.len();
+        let mut least = f64::INFINITY;
+        let own: SmallVec<[_; 8]> = self.faces.iter().map(|own| self.corners(displacement, &own.face)).collect();
+        for other in &self.opposite.faces {
+            let places = self.opposite.present(other, first, displacement);
+            let (center, radius) = ball_around(&places);
+            for (OwnFace { face, .. }, corners) in self.faces.iter().zip(&own) {
+                let (own_center, own_radius) = ball_around(corners);
+                if size(&add(&center, -1.0, &own_center)) - radius - own_radius >= least {
+                    continue;
+                }
+                for one in face.triangles(corners, 0) {
+                    for two in other.triangles(&places, 0) {
+                        let corners = [one, two].map(|triangle| triangle.points.map(|point| point.place));
+                        least = least.min(distance_of_triangles(&corners[0], &corners[1]));
+                    }
+                }
+            }
+        }
+        least
+    }
+}
+
+impl OwnFace {
+    fn new(face: FaceInSpace, places: &[Vector], is_held: bool) -> Self {
+        let corners: SmallVec<[Vector; 4]> = face.nodes.iter().map(|node| places[*node]).collect();
+        let count = face.nodes.len();
+        // The shape functions of all nodes at the corners of each triangle.
+        let value = |point: &SurfacePoint, node: usize| {
+            point.shares().find(|(other, _)| *other == face.nodes[node]).map_or(0.0, |(_, share)| share)
+        };
+        let of_triangle = |triangle: FaceTriangle| {
+            let [a, b, c] = triangle.points.map(|point| point.place);
+            let area = size(&cross(&add(&b, -1.0, &a), &add(&c, -1.0, &a)));
+            (area, DMatrix::from_fn(count, 3, |node, corner| value(&triangle.points[corner], node)))
+        };
+        let (areas, values): (SmallVec<[f64; 4]>, SmallVec<[DMatrix<f64>; 4]>) =
+            face.triangles(&corners, 0).into_iter().map(of_triangle).unzip();
+        let of_corners = DMatrix::from_fn(3, 3, |k, l| if k == l { 1.0 / 12.0 } else { 1.0 / 24.0 });
+        let (mut mass, mut sums) = (DMatrix::zeros(count, count), DVector::zeros(count));
+        for (values, area) in values.iter().zip(&areas) {
+            mass += values * &of_corners * values.transpose() * *area;
+            sums += values.column_sum() * (*area / 6.0);
+        }
+        // The dual function has the integral of the shape function with itself, and none with those of the other nodes.
+        let first = DVector::from_fn(count, |node, _| if node == 0 { sums[0] } else { 0.0 });
+        let shares = mass.cholesky().map(|factor| factor.solve(&first)).unwrap_or(first);
+        let functions = values.iter().map(|values| {
+            let dual = values.transpose() * &shares;
+            [std::array::from_fn(|corner| values[(0, corner)]), std::array::from_fn(|corner| dual[corner])]
+        });
+        let functions = functions.collect();
+        Self { face, areas, functions, is_held }
+    }
+
+    /// The cover of the face by its covered area: where a part is not covered, the dual function gives way to the shape
+    /// function, whose mean has positive weights on any part.
+    fn cover(&self, area: f64) -> FaceCover {
+        let whole = 0.5 * self.areas.iter().sum::<f64>();
+        let x = ((area / whole - LEAST_DUAL) / (1.0 - LEAST_DUAL)).clamp(0.0, 1.0);
+        let by_area = 1.0 / (whole * (1.0 - LEAST_DUAL));
+        let rest = 1.0 - x;
+        FaceCover {
+            dual: x * x * x * (10.0 - x * (15.0 - 6.0 * x)),
+            slopes: [30.0 * x * x * rest * rest * by_area, 60.0 * x * rest * (1.0 - 2.0 * x) * by_area * by_area],
+        }
+    }
+}
+
+impl FaceCover {
+    /// The function of the node at the corners of a triangle.
+    fn blended(&self, [shape, dual]: &[[f64; 3]; 2]) -> [f64; 3] {
+        std::array::from_fn(|corner| shape[corner] + self.dual * (dual[corner] - shape[corner]))
+    }
+}
+
+impl<'a> Covered<'a> {
+    pub(super) fn of_face(&self, face: usize) -> impl Iterator<Item = &CoveredPart<'a>> {
+        self.parts.iter().filter(move |part| part.face == face)
+    }
+
+    /// The change of `∫ φ (h - gap) dA` with the share of the dual function of a face.
+    pub(super) fn by_dual(&self, face: usize, gap: f64) -> f64 {
+        self.of_face(face).map(|part| part.change_to_dual().integral(&part.heights_from(gap))).sum()
+    }
+}
+
+impl NodalMeans {
+    /// The means over covered parts; `None` where there is none.
+    pub(super) fn new(parts: &[CoveredPart<'_>]) -> Option<Self> {
+        let (mut area, mut gap, mut slip_area, mut place) = (0.0, 0.0, 0.0, [0.0; 3]);
+        for part in parts {
+            for l in 0..3 {
+                let weight = part.scale * part.overlap.moments[l];
+                area += weight;
+                gap += weight * part.projected[l].height;
+                let weight = part.scale * part.slip.moments[l];
+                slip_area += weight;
+                place = add(&place, weight, &part.opposite.points[l].place);
+            }
+        }
+        (area > 0.0 && slip_area > 0.0).then(|| Self {
+            area,
+            gap: gap / area,
+            slip_area,
+            place: scaled(&place, 1.0 / slip_area),
+        })
+    }
+}
+
+impl CoveredPart<'_> {
+    /// `∫ φ dA`
+    fn area(&self) -> f64 {
+        self.integral(&[1.0; 3])
+    }
+
+    /// `∫ φ f dA` of a function with `values` at the opposite corners.
+    pub(super) fn integral(&self, values: &[f64; 3]) -> f64 {
+        self.scale * values.iter().zip(self.overlap.moments).map(|(value, moment)| value * moment).sum::<f64>()
+    }
+
+    pub(super) fn heights_from(&self, gap: f64) -> [f64; 3] {
+        self.projected.map(|point| point.height - gap)
+    }
+
+    /// The same part with the function 1.
+    pub(super) fn plain(&self) -> Self {
+        Self { overlap: self.overlap.weighted([1.0; 3]), ..*self }
+    }
+
+    /// The same part with the dual function less the shape function.
+    pub(super) fn change_to_dual(&self) -> Self {
+        let [shape, dual] = &self.functions;
+        let weights = std::array::from_fn(|corner| dual[corner] - shape[corner]);
+        let slip = self.slip.weighted(if self.slips_by_shape { [0.0; 3] } else { weights });
+        Self { overlap: self.overlap.weighted(weights), slip, ..*self }
+    }
+
+    /// The gradient of `∫ φ (h - mean) dA` by the corners of the own triangle and those of the opposite one; `heights` are
+    /// those of the opposite corners, less their mean.
+    pub(super) fn gradient(&self, heights: &[f64; 3]) -> [Vector; 6] {
+        self.spread(&self.weights_of_gap(heights))
+    }
+
+    /// The rates of `∫ φ (t·y) dA` at fixed points of the own triangle for both tangents.
+    fn along(&self, means: &NodalMeans, tangents: &[Vector; 2]) -> [[Vector; 6]; 2] {
+        let places = self.opposite.points.map(|point| add(&point.place, -1.0, &means.place));
+        tangents.map(|tangent| self.at_points(&places.map(|place| dot(&tangent, &place))))
+    }
+
+    /// The rate of `∫ φ f dA` at fixed points of the own triangle, of a function with `values` at the opposite corners.
+    pub(super) fn at_points(&self, values: &[f64; 3]) -> [Vector; 6] {
+        self.spread(&self.weights_at_points(values))
+    }
+
+    /// The slopes by the coordinates of the opposite corners.
+    pub(super) fn weights_of_gap(&self, heights: &[f64; 3]) -> [[f64; 3]; 3] {
+        let in_plane = self.overlap.gradient(heights, &self.opposite.ends);
+        self.scaled_weights(in_plane, 1.0)
+    }
+
+    pub(super) fn weights_at_points(&self, values: &[f64; 3]) -> [[f64; 3]; 3] {
+        self.scaled_weights(self.slip.gradient_at_points(values), 0.0)
+    }
+
+    /// The gradient of `∫ φ dA`, which changes where the surface ends.
+    pub(super) fn gradient_of_area(&self) -> [Vector; 6] {
+        self.spread(&self.scaled_weights(self.overlap.gradient(&[1.0; 3], &self.opposite.ends), 0.0))
+    }
+
+    /// The gradient of the area of slips.
+    pub(super) fn gradient_of_slip_area(&self) -> [Vector; 6] {
+        self.spread(&self.scaled_weights(self.slip.gradient(&[1.0; 3], &self.opposite.ends), 0.0))
+    }
+
+    /// The area of slips.
+    pub(super) fn slip_area(&self) -> f64 {
+        self.scale * self.slip.moments.iter().sum::<f64>()
+    }
+
+    fn scaled_weights(&self, in_plane: [[f64; 2]; 3], by_height: f64) -> [[f64; 3]; 3] {
+        std::array::from_fn(|l| {
+            let [x, y] = in_plane[l];
+            [self.scale * x, self.scale * y, self.scale * by_height * self.overlap.moments[l]]
+        })
+    }
+
+    /// A gradient by the coordinates of the opposite corners as one by the places of all corners.
+    fn spread(&self, weights: &[[f64; 3]; 3]) -> [Vector; 6] {
+        let mut gradient = [[0.0; 3]; 6];
+        for (l, weights) in weights.iter().enumerate() {
+            let [a, b, c, own] = self.frame.gradient(&self.projected[l], weights);
+            for (sum, part) in gradient.iter_mut().zip([a, b, c]) {
+                *sum = add(sum, 1.0, &part);
+            }
+            gradient[3 + l] = own;
+        }
+        gradient
+    }
+
+    /// Calls `each` with the nodes of the six corners and a gradient by the places of these.
+    pub(super) fn each_node(&self, gradient: &[Vector; 6], each: &mut impl FnMut(usize, Vector)) {
+        for (point, vector) in self.own.points.iter().chain(&self.opposite.points).zip(gradient) {
+            point.shares().for_each(|(node, share)| each(node, scaled(vector, share)));
+        }
+    }
+}
+
+/// A vector with the components along one frame that it has along another.
+fn turn(from: &[Vector; 3], to: &[Vector; 3], vector: &Vector) -> Vector {
+    let parts = from.iter().zip(to).map(|(axis, turned)| scaled(turned, dot(axis, vector)));
+    parts.fold([0.0; 3], |sum, part| add(&sum, 1.0, &part))
+}
+
+impl CoupledKinematics for MortarNodeInSpace {
+    fn nodes(&self) -> &[usize] {
+        &self.nodes
+    }
+
+    fn own_nodes(&self) -> usize {
+        self.places.len()
+    }
+
+    /// The gap alone: there are no coordinates along a surface in space.
+    fn place(&self, displacement: LocalDisplacements<'_>) -> Vector {
+        [0.0, 0.0, self.state(displacement).gap - self.start]
+    }
+
+    /// The chord in axes that turn with the node, times the mean of the rows before and after: of second order, and zero
+    /// for a common rigid motion.
+    fn motion(&self, from: LocalDisplacements<'_>, to: LocalDisplacements<'_>) -> Vector {
+        let (before, after) = (self.state(from), self.state(to));
+        let mut motion = [0.0, 0.0, after.gap - before.gap];
+        if before.columns.is_empty() || after.columns.is_empty() {
+            return motion;
+        }
+        let origins = [self.position(from, 0), self.position(to, 0)];
+        for (own, other, sign) in [(&before, &after, -1.0), (&after, &before, 1.0)] {
+            for (node, columns) in &own.columns {
+                let start = add(&self.place_of(from, *node), -1.0, &origins[0]);
+                let end = add(&self.place_of(to, *node), -1.0, &origins[1]);
+                let (here, there) = if sign < 0.0 { (start, end) } else { (end, start) };
+                let chord = add(&here, -1.0, &turn(&other.frame, &own.frame, &there));
+                for (column, part) in columns.iter().zip(chord) {
+                    (0..2).for_each(|row| motion[row] += 0.5 * sign * part * column[row]);
+                }
+            }
+        }
+        motion
+    }
+
+    fn each_column(&self, displacement: LocalDisplacements<'_>, each: &mut dyn FnMut(usize, &Vector)) {
+        for (node, columns) in &self.state(displacement).columns {
+            columns.iter().enumerate().for_each(|(k, column)| each(3 * node + k, column));
+        }
+    }
+
+    fn each_curvature(
+        &self,
+        displacement: LocalDisplacements<'_>,
+        force: &Vector,
+        add: &mut dyn FnMut(usize, usize, f64),
+    ) {
+        second_derivatives::each(self, displacement, force, add);
+    }
+
+    fn distance_to_end(&self, displacement: LocalDisplacements<'_>) -> f64 {
+        let whole: f64 = self.faces.iter().flat_map(|face| &face.areas).sum();
+        (self.state(displacement).covered - LAST_COVERED) * whole.sqrt()
+    }
+
+    fn clearance(&self, displacement: LocalDisplacements<'_>) -> Option<(f64, f64)> {
+        // Points of faces move no farther than their nodes, and the two surfaces together by √2 at most.
+        Some((self.distance(displacement), SQRT_2))
+    }
+}
