@@ -8,7 +8,7 @@ use crate::model::check::scope::Scope;
 use crate::model::input::limits::MAX_COUPLED_PAIRS;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{quoted, suggestion};
-use crate::model::request::{Contact, Obstacle, Polyline, Side};
+use crate::model::request::{Contact, Obstacle, Polyline, Side, Surface};
 use crate::model::solids::contact_surfaces::ContactSurfaces;
 use crate::resources::budget;
 
@@ -90,7 +90,10 @@ pub(super) fn contacts(scope: &Scope, curves: &Curves, mistakes: &mut Mistakes) 
 /// The pairs of nodes that contacts of bodies couple: of each the nodes on its own side, three in the plane and some nine in
 /// space, with the surface that it touches, and the nodes of such a surface with each other.
 fn coupled_pairs(scope: &Scope) -> usize {
-    let nodes = |name: &str| scope.model.surfaces.get(name).map_or(0, |surface| surface.faces.len() + 1);
+    let distinct = |surface: &Surface| surface.faces.iter().flatten().collect::<HashSet<_>>().len();
+    let counts: HashMap<&str, usize> =
+        scope.model.surfaces.iter().map(|(name, surface)| (name.as_str(), distinct(surface))).collect();
+    let nodes = |name: &str| counts.get(name).copied().unwrap_or(0);
     let against: Vec<&str> = scope.model.contacts.iter().filter_map(|contact| contact.against.as_deref()).collect();
     let touched: HashSet<&str> = against.iter().copied().collect();
     let own = if scope.model.dimension == 2 { 3 } else { 9 };
