@@ -42,7 +42,8 @@ pub trait CoupledKinematics: Debug + Send + Sync {
         0
     }
 
-    /// The position `m(u)` of the contact; zero at zero displacement.
+    /// The position `m(u)` of the contact; zero at zero displacement. Where a surface has no coordinates along it, those parts
+    /// are zero, and [`Self::motion`] has them.
     fn place(&self, displacement: LocalDisplacements<'_>) -> Vector;
 
     /// The motion `∫ B du` between two positions of one path, not far from each other.

@@ -124,7 +124,8 @@ pub fn reaction_in_space(loading: Loading<'_>, contact: usize, at: Placed<'_>) -
     (force, rate)
 }
 
-/// Orthonormal directions in which a contact is free to move: all directions where several nodes move the contact.
+/// Orthonormal directions in which a contact is free to move: where several nodes move the contact, in the axes of the
+/// contact, all but those that supports take from surfaces in space.
 pub fn free_directions(loading: Loading<'_>, contact: usize) -> Vec<Vector> {
     let structure = loading.structure;
     let axes = &AXES[..structure.dimension];
@@ -137,7 +138,6 @@ pub fn free_directions(loading: Loading<'_>, contact: usize) -> Vec<Vector> {
             let pair = &loading.contacts[contact];
             let frame = pair.frame(&[0.0; 3]);
             match pair.sliding {
-                // Supports may leave surfaces in space fewer motions than there are axes.
                 Sliding::None | Sliding::Line { .. } if structure.dimension == 3 => {
                     std::iter::once(frame.normal).chain(frame.tangents).take(1 + pair.sliding.directions()).collect()
                 }

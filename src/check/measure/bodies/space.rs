@@ -1,6 +1,13 @@
 //! Mortar contacts in space as posted: what covers a triangle by the corners inside and the crossings of edges, in order
 //! around their middle; the distance at the corners of the own triangle, where lines along its normal meet the plane of the
 //! other; derivatives by dual numbers.
+//!
+//! ```text
+//! g = Σ_k μ_k h_k / Σ_k μ_k,      μ_k = ∫ χ λ_k dA,      χ = φ + s (ψ - φ)
+//! ```
+//!
+//! with the distances `h_k` at the corners of the own triangles, the shape functions `λ_k` of these, and the shape function `φ` and
+//! the dual function `ψ` of the node; the mechanics' `contact::bodies::space` says why.
 
 use crate::check::measure::bodies::surface::{MeasuredTriangle, TouchedSurfaces};
 use crate::check::measure::bodies::{BodyPlace, BodyState, COVERED, FAR_BEHIND, ROUNDINGS};

@@ -41,7 +41,7 @@ fn all() -> Vec<(&'static str, Arc<dyn CoupledKinematics>)> {
     ]
 }
 
-fn random(count: usize, size: f64, seed: u64) -> Vec<f64> {
+pub(super) fn random(count: usize, size: f64, seed: u64) -> Vec<f64> {
     let mut state = seed;
     let mut next = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -1,16 +1,18 @@
-//! A node with its faces in front of an opposite surface.
+//! A node with its faces in front of an opposite surface: gap, motion and their derivatives, as the equations of the folder
+//! have them.
 
+use crate::mechanics::contact::bodies::space::covered_part::{Covered, CoveredPart, NodalMeans};
 use crate::mechanics::contact::bodies::space::overlap::Overlap;
-use crate::mechanics::contact::bodies::space::projection::{Projected, TriangleFrame};
+use crate::mechanics::contact::bodies::space::own_face::OwnFace;
+use crate::mechanics::contact::bodies::space::projection::TriangleFrame;
 use crate::mechanics::contact::bodies::space::second_derivatives;
 use crate::mechanics::contact::bodies::space::surface::{
-    FaceInSpace, FaceTriangle, SurfaceInSpace, SurfacePoint, area_vector, ball_around, distance_from_triangle,
-    distance_of_triangles,
+    FaceInSpace, SurfaceInSpace, area_vector, ball_around, distance_from_triangle, distance_of_triangles,
 };
+use crate::mechanics::contact::bodies::space::tangents::NodalTangents;
 use crate::mechanics::contact::bodies::tolerances::{DEEPEST, LAST_COVERED, LEAST_COVERED};
 use crate::mechanics::contact::kinematics::{CoupledKinematics, LocalDisplacements};
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
-use nalgebra::{DMatrix, DVector};
 use smallvec::SmallVec;
 use std::f64::consts::SQRT_2;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -30,38 +32,6 @@ pub struct MortarNodeInSpace {
     recent: Mutex<RecentStates>,
 }
 
-/// A face at the node.
-#[derive(Debug)]
-struct OwnFace {
-    /// The node comes first; nodes are indices into those of the contact.
-    face: FaceInSpace,
-    /// Undeformed areas of the triangles of the face, twice.
-    areas: SmallVec<[f64; 4]>,
-    /// The shape function of the node and its dual function at the corners of the triangles.
-    functions: SmallVec<[[[f64; 3]; 2]; 4]>,
-    /// Whether one of its nodes is supported. By the dual function of such a node friction would have hardly any motion to
-    /// act on; slips are weighted by shape functions there.
-    is_held: bool,
-}
-
-/// How far a face is covered.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct FaceCover {
-    /// The share of the dual function in the function of the node.
-    dual: f64,
-    /// The first two derivatives of that by the covered area.
-    pub slopes: [f64; 2],
-}
-
-/// The parts of the node's faces that the opposite surface covers.
-pub(super) struct Covered<'a> {
-    pub parts: Vec<CoveredPart<'a>>,
-    /// By the faces at the node.
-    pub faces: SmallVec<[FaceCover; 8]>,
-    /// The share of the faces that is covered, as the shape function of the node counts it.
-    share: f64,
-}
-
 /// The last states of a node, each with its displacements.
 #[derive(Debug, Default)]
 struct RecentStates {
@@ -70,31 +40,8 @@ struct RecentStates {
     next: usize,
 }
 
-/// Below this share of its area that is covered, a face has means by shape functions alone.
-const LEAST_DUAL: f64 = 0.5;
-
 /// How many states are kept: the anchor of an increment, the iterate, and those beside.
 const KEPT_STATES: usize = 4;
-
-/// A triangle of a face at the node and a triangle of the opposite surface that covers a part of it.
-#[derive(Clone, Copy)]
-pub(super) struct CoveredPart<'a> {
-    pub own: FaceTriangle<'a>,
-    pub frame: TriangleFrame,
-    pub opposite: FaceTriangle<'a>,
-    pub projected: [Projected; 3],
-    /// Weighted by the function of the node for gaps, and by that for slips.
-    pub overlap: Overlap,
-    pub slip: Overlap,
-    /// Undeformed area of the own triangle, twice.
-    pub scale: f64,
-    /// The face of the own triangle, as a place among those at the node.
-    pub face: usize,
-    /// The shape function of the node and its dual function at the own corners.
-    functions: [[f64; 3]; 2],
-    /// Whether slips are weighted by the shape function.
-    slips_by_shape: bool,
-}
 
 /// A state of the node.
 #[derive(Debug)]
@@ -107,42 +54,6 @@ struct NodeState {
     columns: Vec<(usize, [Vector; 3])>,
     /// Tangents and normal.
     frame: [Vector; 3],
-}
-
-/// Means at the node: of the gap, and of the place that the node is in front of; with the areas `∫ φ dA` of both.
-pub(super) struct NodalMeans {
-    pub area: f64,
-    pub gap: f64,
-    pub slip_area: f64,
-    pub place: Vector,
-}
-
-/// The tangents of a node, with what they depend on: `t_1` is the part of `edge` in the plane across `normal`, a sum of
-/// area vectors, and `t_2 = n × t_1`.
-pub(super) struct NodalTangents {
-    normal: Vector,
-    edge: Vector,
-    pub tangents: [Vector; 2],
-}
-
-impl NodalTangents {
-    fn new(normal: Vector, edge: Vector) -> Self {
-        let along = unit(&normal);
-        let first = unit(&add(&edge, -dot(&along, &edge), &along));
-        Self { normal, edge, tangents: [first, cross(&along, &first)] }
-    }
-
-    /// The changes of both tangents with changes of the normal and of the edge.
-    fn changes(&self, normal: &Vector, edge: &Vector) -> [Vector; 2] {
-        let across = |vector: &Vector, unit: &Vector| add(vector, -dot(unit, vector), unit);
-        let along = unit(&self.normal);
-        let turned = scaled(&across(normal, &along), 1.0 / size(&self.normal));
-        let flat = add(&self.edge, -dot(&along, &self.edge), &along);
-        let change = add(edge, -dot(&turned, &self.edge) - dot(&along, edge), &along);
-        let change = add(&change, -dot(&along, &self.edge), &turned);
-        let first = scaled(&across(&change, &self.tangents[0]), 1.0 / size(&flat));
-        [first, add(&cross(&turned, &self.tangents[0]), 1.0, &cross(&along, &first))]
-    }
 }
 
 impl MortarNodeInSpace {
@@ -414,191 +325,6 @@ impl MortarNodeInSpace {
             }
         }
         least
-    }
-}
-
-impl OwnFace {
-    fn new(face: FaceInSpace, places: &[Vector], is_held: bool) -> Self {
-        let corners: SmallVec<[Vector; 4]> = face.nodes.iter().map(|node| places[*node]).collect();
-        let count = face.nodes.len();
-        // The shape functions of all nodes at the corners of each triangle.
-        let value = |point: &SurfacePoint, node: usize| {
-            point.shares().find(|(other, _)| *other == face.nodes[node]).map_or(0.0, |(_, share)| share)
-        };
-        let of_triangle = |triangle: FaceTriangle| {
-            let [a, b, c] = triangle.points.map(|point| point.place);
-            let area = size(&cross(&add(&b, -1.0, &a), &add(&c, -1.0, &a)));
-            (area, DMatrix::from_fn(count, 3, |node, corner| value(&triangle.points[corner], node)))
-        };
-        let (areas, values): (SmallVec<[f64; 4]>, SmallVec<[DMatrix<f64>; 4]>) =
-            face.triangles(&corners, 0).into_iter().map(of_triangle).unzip();
-        let of_corners = DMatrix::from_fn(3, 3, |k, l| if k == l { 1.0 / 12.0 } else { 1.0 / 24.0 });
-        let (mut mass, mut sums) = (DMatrix::zeros(count, count), DVector::zeros(count));
-        for (values, area) in values.iter().zip(&areas) {
-            mass += values * &of_corners * values.transpose() * *area;
-            sums += values.column_sum() * (*area / 6.0);
-        }
-        // The dual function has the integral of the shape function with itself, and none with those of the other nodes.
-        let first = DVector::from_fn(count, |node, _| if node == 0 { sums[0] } else { 0.0 });
-        let shares = mass.cholesky().map(|factor| factor.solve(&first)).unwrap_or(first);
-        let functions = values.iter().map(|values| {
-            let dual = values.transpose() * &shares;
-            [std::array::from_fn(|corner| values[(0, corner)]), std::array::from_fn(|corner| dual[corner])]
-        });
-        let functions = functions.collect();
-        Self { face, areas, functions, is_held }
-    }
-
-    /// The cover of the face by its covered area: where a part is not covered, the dual function gives way to the shape
-    /// function, whose mean has positive weights on any part.
-    fn cover(&self, area: f64) -> FaceCover {
-        let whole = 0.5 * self.areas.iter().sum::<f64>();
-        let x = ((area / whole - LEAST_DUAL) / (1.0 - LEAST_DUAL)).clamp(0.0, 1.0);
-        let by_area = 1.0 / (whole * (1.0 - LEAST_DUAL));
-        let rest = 1.0 - x;
-        FaceCover {
-            dual: x * x * x * (10.0 - x * (15.0 - 6.0 * x)),
-            slopes: [30.0 * x * x * rest * rest * by_area, 60.0 * x * rest * (1.0 - 2.0 * x) * by_area * by_area],
-        }
-    }
-}
-
-impl FaceCover {
-    /// The function of the node at the corners of a triangle.
-    fn blended(&self, [shape, dual]: &[[f64; 3]; 2]) -> [f64; 3] {
-        std::array::from_fn(|corner| shape[corner] + self.dual * (dual[corner] - shape[corner]))
-    }
-}
-
-impl<'a> Covered<'a> {
-    pub(super) fn of_face(&self, face: usize) -> impl Iterator<Item = &CoveredPart<'a>> {
-        self.parts.iter().filter(move |part| part.face == face)
-    }
-
-    /// The change of `∫ φ (h - gap) dA` with the share of the dual function of a face.
-    pub(super) fn by_dual(&self, face: usize, gap: f64) -> f64 {
-        self.of_face(face).map(|part| part.change_to_dual().integral(&part.heights_from(gap))).sum()
-    }
-}
-
-impl NodalMeans {
-    /// The means over covered parts; `None` where there is none.
-    pub(super) fn new(parts: &[CoveredPart<'_>]) -> Option<Self> {
-        let (mut area, mut gap, mut slip_area, mut place) = (0.0, 0.0, 0.0, [0.0; 3]);
-        for part in parts {
-            for l in 0..3 {
-                let weight = part.scale * part.overlap.moments[l];
-                area += weight;
-                gap += weight * part.projected[l].height;
-                let weight = part.scale * part.slip.moments[l];
-                slip_area += weight;
-                place = add(&place, weight, &part.opposite.points[l].place);
-            }
-        }
-        (area > 0.0 && slip_area > 0.0).then(|| Self {
-            area,
-            gap: gap / area,
-            slip_area,
-            place: scaled(&place, 1.0 / slip_area),
-        })
-    }
-}
-
-impl CoveredPart<'_> {
-    /// `∫ φ dA`
-    fn area(&self) -> f64 {
-        self.integral(&[1.0; 3])
-    }
-
-    /// `∫ φ f dA` of a function with `values` at the opposite corners.
-    pub(super) fn integral(&self, values: &[f64; 3]) -> f64 {
-        self.scale * values.iter().zip(self.overlap.moments).map(|(value, moment)| value * moment).sum::<f64>()
-    }
-
-    pub(super) fn heights_from(&self, gap: f64) -> [f64; 3] {
-        self.projected.map(|point| point.height - gap)
-    }
-
-    /// The same part with the function 1.
-    pub(super) fn plain(&self) -> Self {
-        Self { overlap: self.overlap.weighted([1.0; 3]), ..*self }
-    }
-
-    /// The same part with the dual function less the shape function.
-    pub(super) fn change_to_dual(&self) -> Self {
-        let [shape, dual] = &self.functions;
-        let weights = std::array::from_fn(|corner| dual[corner] - shape[corner]);
-        let slip = self.slip.weighted(if self.slips_by_shape { [0.0; 3] } else { weights });
-        Self { overlap: self.overlap.weighted(weights), slip, ..*self }
-    }
-
-    /// The gradient of `∫ φ (h - mean) dA` by the corners of the own triangle and those of the opposite one; `heights` are
-    /// those of the opposite corners, less their mean.
-    pub(super) fn gradient(&self, heights: &[f64; 3]) -> [Vector; 6] {
-        self.spread(&self.weights_of_gap(heights))
-    }
-
-    /// The rates of `∫ φ (t·y) dA` at fixed points of the own triangle for both tangents.
-    fn along(&self, means: &NodalMeans, tangents: &[Vector; 2]) -> [[Vector; 6]; 2] {
-        let places = self.opposite.points.map(|point| add(&point.place, -1.0, &means.place));
-        tangents.map(|tangent| self.at_points(&places.map(|place| dot(&tangent, &place))))
-    }
-
-    /// The rate of `∫ φ f dA` at fixed points of the own triangle, of a function with `values` at the opposite corners.
-    pub(super) fn at_points(&self, values: &[f64; 3]) -> [Vector; 6] {
-        self.spread(&self.weights_at_points(values))
-    }
-
-    /// The slopes by the coordinates of the opposite corners.
-    pub(super) fn weights_of_gap(&self, heights: &[f64; 3]) -> [[f64; 3]; 3] {
-        let in_plane = self.overlap.gradient(heights, &self.opposite.ends);
-        self.scaled_weights(in_plane, 1.0)
-    }
-
-    pub(super) fn weights_at_points(&self, values: &[f64; 3]) -> [[f64; 3]; 3] {
-        self.scaled_weights(self.slip.gradient_at_points(values), 0.0)
-    }
-
-    /// The gradient of `∫ φ dA`, which changes where the surface ends.
-    pub(super) fn gradient_of_area(&self) -> [Vector; 6] {
-        self.spread(&self.scaled_weights(self.overlap.gradient(&[1.0; 3], &self.opposite.ends), 0.0))
-    }
-
-    /// The gradient of the area of slips.
-    pub(super) fn gradient_of_slip_area(&self) -> [Vector; 6] {
-        self.spread(&self.scaled_weights(self.slip.gradient(&[1.0; 3], &self.opposite.ends), 0.0))
-    }
-
-    /// The area of slips.
-    pub(super) fn slip_area(&self) -> f64 {
-        self.scale * self.slip.moments.iter().sum::<f64>()
-    }
-
-    fn scaled_weights(&self, in_plane: [[f64; 2]; 3], by_height: f64) -> [[f64; 3]; 3] {
-        std::array::from_fn(|l| {
-            let [x, y] = in_plane[l];
-            [self.scale * x, self.scale * y, self.scale * by_height * self.overlap.moments[l]]
-        })
-    }
-
-    /// A gradient by the coordinates of the opposite corners as one by the places of all corners.
-    fn spread(&self, weights: &[[f64; 3]; 3]) -> [Vector; 6] {
-        let mut gradient = [[0.0; 3]; 6];
-        for (l, weights) in weights.iter().enumerate() {
-            let [a, b, c, own] = self.frame.gradient(&self.projected[l], weights);
-            for (sum, part) in gradient.iter_mut().zip([a, b, c]) {
-                *sum = add(sum, 1.0, &part);
-            }
-            gradient[3 + l] = own;
-        }
-        gradient
-    }
-
-    /// Calls `each` with the nodes of the six corners and a gradient by the places of these.
-    pub(super) fn each_node(&self, gradient: &[Vector; 6], each: &mut impl FnMut(usize, Vector)) {
-        for (point, vector) in self.own.points.iter().chain(&self.opposite.points).zip(gradient) {
-            point.shares().for_each(|(node, share)| each(node, scaled(vector, share)));
-        }
     }
 }
 

@@ -5,7 +5,7 @@
 //! Q_l = ∫_P φ β_l dξ,      ∂/∂ξ_m ∫_P φ f dξ = -Q_m ∇f + ∮ φ f β_m n ds,      f = Σ_l β_l f_l
 //! ```
 //!
-//! The boundary integral runs over the edges of the other triangle. Where a function is continuous from one triangle of a
+//! with any function `φ` that is linear over the first triangle. The boundary integral runs over the edges of the other triangle. Where a function is continuous from one triangle of a
 //! surface to the next, the integrals over their common edge cancel: they are left out but for edges at which the surface
 //! ends. So edges that coincide, as in meshes that match, need no care.
 
@@ -122,10 +122,7 @@ impl Overlap {
             }
         }
         for (edge, is_end) in ends.iter().enumerate() {
-            let pair = [edge, (edge + 1) % 3];
-            let Some((from, to, share)) = self.inside(pair[0], pair[1]) else { continue };
-            let along = self.outward(pair[0], pair[1]);
-            let products = edge_products(from, to, |t| share * self.weight_at(pair, t));
+            let Some((pair, along, products)) = self.edge(edge) else { continue };
             for (i, m) in pair.into_iter().enumerate() {
                 for (j, n) in pair.into_iter().enumerate() {
                     for a in 0..2 {
@@ -149,10 +146,7 @@ impl Overlap {
     pub fn changes_at_ends(&self, ends: &[bool; 3]) -> [[PlaneVector; 3]; 3] {
         let mut changes = [[[0.0; 2]; 3]; 3];
         for edge in (0..3).filter(|edge| ends[*edge]) {
-            let pair = [edge, (edge + 1) % 3];
-            let Some((from, to, share)) = self.inside(pair[0], pair[1]) else { continue };
-            let along = self.outward(pair[0], pair[1]);
-            let products = edge_products(from, to, |t| share * self.weight_at(pair, t));
+            let Some((pair, along, products)) = self.edge(edge) else { continue };
             for (i, l) in pair.into_iter().enumerate() {
                 for (j, m) in pair.into_iter().enumerate() {
                     (0..2).for_each(|k| changes[l][m][k] += products[i][j] * along[k]);
@@ -160,6 +154,16 @@ impl Overlap {
             }
         }
         changes
+    }
+
+    /// The corners of an edge, the edge turned outwards (as long as the edge; the corners run clockwise) and `∫ φ β_i β_j dt`
+    /// over its part inside the first triangle; `None` where it has none.
+    fn edge(&self, edge: usize) -> Option<([usize; 2], PlaneVector, [[f64; 2]; 2])> {
+        let pair = [edge, (edge + 1) % 3];
+        let (from, to, share) = self.inside(pair[0], pair[1])?;
+        let [one, other] = pair.map(|corner| self.corners[corner]);
+        let products = edge_products(from, to, |t| share * self.weight_at(pair, t));
+        Some((pair, [one[1] - other[1], other[0] - one[0]], products))
     }
 
     /// The derivatives of the integrals over an edge at which the surface ends.
@@ -213,12 +217,6 @@ impl Overlap {
         let shares = [one, other].map(|[x, y]| [1.0 - x - y, x, y]);
         let runs_along = (0..3).any(|k| shares.iter().all(|share| share[k].abs() <= ALONG));
         (to > from).then_some((from, to, if runs_along { 0.5 } else { 1.0 }))
-    }
-
-    /// The edge between two corners turned outwards, as long as the edge; the corners run clockwise.
-    fn outward(&self, first: usize, last: usize) -> PlaneVector {
-        let (one, other) = (self.corners[first], self.corners[last]);
-        [one[1] - other[1], other[0] - one[0]]
     }
 
     fn weight_at(&self, [first, last]: [usize; 2], t: f64) -> f64 {

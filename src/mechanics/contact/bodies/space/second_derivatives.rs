@@ -2,14 +2,16 @@
 //! of these by the places of the nodes.
 //!
 //! ```text
-//! Σ_k r_k ∂B_k/∂u = 1/A [r_n ∇² ∫ φ h dA + ∂/∂u ∫ φ Σ_l c_l ∇β_l dA - r_n (∇g ∇Aᵀ + ∇A ∇gᵀ) - b ∇Aᵀ + Σ_l b_l ∇c_lᵀ]
+//! Σ_k r_k ∂B_k/∂u = r_n/A [∇²∫ χ (h - g) dA - ∇g ∇Aᵀ - ∇A ∇gᵀ] + 1/A [∂/∂u ∫ χ Σ_l c_l ∇β_l dA - b ∇Aᵀ + Σ_l b_l ∇c_lᵀ]
 //! ```
 //!
-//! with `c_l = Σ_α r_α t_α·y_l`, which is constant in the second term, the tangential forces `b` and their parts `b_l` by unit
-//! values at one node.
+//! at a constant `g` under the first integral, with `c_l = Σ_α r_α t_α·y_l`, constant under the second, the tangential forces
+//! `b` and their parts `b_l` by a unit value at one node. Where a face is covered in part, the share `s` of the dual function
+//! in `χ` changes as well, which adds the products of its gradient with the derivatives by `s`.
 
 use crate::mechanics::contact::bodies::covered_face::MetNodes;
-use crate::mechanics::contact::bodies::space::mortar::{CoveredPart, MortarNodeInSpace, NodalMeans};
+use crate::mechanics::contact::bodies::space::covered_part::{CoveredPart, NodalMeans};
+use crate::mechanics::contact::bodies::space::mortar::MortarNodeInSpace;
 use crate::mechanics::contact::kinematics::LocalDisplacements;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
 use itertools::Itertools;
@@ -138,9 +140,13 @@ pub(super) fn each(
             by_slip_area[at] += slip_area_by_dual * cover.slopes[0] * value;
         }
     }
-    if by_area.iter().any(|value| *value != 0.0) {
+    // Faces that are covered as a whole have areas that do not change.
+    let changes = |area: &[f64]| area.iter().any(|value| *value != 0.0);
+    if changes(&by_area) {
         local.add_product(-inverse, &by_gap, &by_area);
         local.add_product(-inverse, &by_area, &by_gap);
+    }
+    if changes(&by_slip_area) {
         local.add_product(-of_slip, &by_slip, &by_slip_area);
     }
     if force[0] != 0.0 || force[1] != 0.0 {

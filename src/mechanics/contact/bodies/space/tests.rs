@@ -2,6 +2,7 @@
 
 use crate::mechanics::contact::bodies::space::mortar::MortarNodeInSpace;
 use crate::mechanics::contact::bodies::space::surface::{SurfaceInSpace, SurfaceInSpaceError};
+use crate::mechanics::contact::bodies::tests::random;
 use crate::mechanics::contact::kinematics::CoupledKinematics;
 use crate::mechanics::contact::vector::{Vector, cross};
 use smallvec::SmallVec;
@@ -58,15 +59,6 @@ fn all() -> Vec<(&'static str, MortarNodeInSpace, Vector)> {
         ("covered in part, at an edge", contact(1, [false, false], beside, None), beside),
         ("covered in part, a node supported", contact(4, [false, false], beside, Some(1)), beside),
     ]
-}
-
-fn random(count: usize, size: f64, seed: u64) -> Vec<f64> {
-    let mut state = seed;
-    let mut next = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    };
-    (0..count).map(|_| size * next()).collect()
 }
 
 fn columns(contact: &MortarNodeInSpace, u: &[f64]) -> Vec<Vector> {
