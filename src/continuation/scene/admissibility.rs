@@ -33,7 +33,7 @@ pub(super) fn refuse_dragged_supports(scene: &Scene, model: &Model) -> Result<()
         };
         if model.contacts[index].friction > 0.0 && (0..dimension).any(driven) {
             return Err(InputErrors(vec![InputError::new(
-                format!("/model/contacts/{index}/friction"),
+                format!("/model/contacts/{}/friction", model.posted_contact(index)),
                 format!(
                     "\"{}\" is supported in a component in which it and \"{}\" are driven against each other; friction \
                      on such a support is not available: leave the component free and hold it by a spring, or give \

@@ -85,16 +85,12 @@ fn couple(structure: &mut Structure, contacts: &[ContactPair]) {
     if coupled.is_empty() {
         return;
     }
-    let opposite = |contact: &&ContactPair| {
-        let (own, all) = (contact.kinematics.own_nodes().len(), contact.kinematics.nodes());
-        all[own..].to_vec()
-    };
-    let touched: IndexSet<Vec<usize>> = coupled.iter().map(opposite).collect();
+    let touched: IndexSet<&[usize]> = coupled.iter().map(|contact| contact.kinematics.touched_nodes()).collect();
     let own = coupled.iter().map(|contact| {
         let kinematics = &contact.kinematics;
         [kinematics.own_nodes().to_vec(), kinematics.nodes().to_vec()]
     });
-    let couplings = own.chain(touched.into_iter().map(|nodes| [nodes.clone(), nodes])).collect();
+    let couplings = own.chain(touched.into_iter().map(|nodes| [nodes.to_vec(), nodes.to_vec()])).collect();
     structure.couple(couplings);
 }
 

@@ -26,13 +26,15 @@ pub(crate) fn warnings(request: &JobRequest) -> Vec<Warning> {
 fn large_friction(model: &Model) -> Vec<Warning> {
     let large = model.contacts.iter().enumerate().filter(|(_, contact)| contact.friction > LARGEST_USUAL_FRICTION);
     let warning = |(place, contact): (usize, &Contact)| Warning {
-        pointer: format!("/model/contacts/{place}/friction"),
+        pointer: format!("/model/contacts/{}/friction", model.posted_contact(place)),
         detail: format!(
             "the coefficient {:?} is unusually large; of an angle in degrees the coefficient is the tangent",
             contact.friction
         ),
     };
-    cut(large.map(warning).collect())
+    let mut warnings: Vec<Warning> = large.map(warning).collect();
+    warnings.dedup_by(|one, other| one.pointer == other.pointer);
+    cut(warnings)
 }
 
 /// The first warnings of a kind; the last of them says how many there are besides.
@@ -76,7 +78,7 @@ fn overlapping_meshes(model: &Model) -> Vec<Warning> {
         "the meshes overlap at the start: {} contacts of bodies by up to {most:e}; they begin closed, without reaction",
         overlaps.len()
     );
-    vec![Warning { pointer: format!("/model/contacts/{place}"), detail }]
+    vec![Warning { pointer: format!("/model/contacts/{}", model.posted_contact(*place)), detail }]
 }
 
 /// Bars that join the same two nodes as one before them.

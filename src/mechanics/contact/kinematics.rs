@@ -37,6 +37,12 @@ pub trait CoupledKinematics: Debug + Send + Sync {
         1
     }
 
+    /// The nodes of the surface that is touched: those of [`Self::nodes`] that are not its own, unless a surface touches
+    /// itself.
+    fn touched_nodes(&self) -> &[usize] {
+        &self.nodes()[self.own_nodes()..]
+    }
+
     /// The number of rotations of each node that move the contact.
     fn rotations(&self) -> usize {
         0
@@ -96,6 +102,14 @@ impl Kinematics {
         match self {
             Self::Node(node) => std::slice::from_ref(node),
             Self::Coupled(coupled) => &coupled.nodes()[..coupled.own_nodes()],
+        }
+    }
+
+    /// The nodes of the surface that is touched; none of an obstacle.
+    pub fn touched_nodes(&self) -> &[usize] {
+        match self {
+            Self::Node(_) => &[],
+            Self::Coupled(coupled) => coupled.touched_nodes(),
         }
     }
 

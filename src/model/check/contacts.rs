@@ -43,7 +43,7 @@ pub(super) fn contacts(scope: &Scope, curves: &Curves, mistakes: &mut Mistakes) 
     let surfaces = ContactSurfaces::new(scope.model, 1.0);
     let (mut touching, mut pairs) = (HashSet::new(), HashSet::new());
     for (index, contact) in scope.model.contacts.iter().enumerate() {
-        let at = at.index(index);
+        let at = at.index(scope.model.posted_contact(index));
         friction(contact, &at.member("friction"), mistakes);
         let node = scope.node(&contact.node, &at.member("node"), mistakes);
         if contact.against.is_some() {
@@ -57,6 +57,7 @@ pub(super) fn contacts(scope: &Scope, curves: &Curves, mistakes: &mut Mistakes) 
                 }
             }
             if let (Some(own), Some(other)) = (&contact.surface, &contact.against)
+                && own != other
                 && pairs.insert((own, other))
                 && pairs.contains(&(other, own))
             {

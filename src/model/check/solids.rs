@@ -172,10 +172,13 @@ pub(super) fn surfaces(scope: &Scope, mistakes: &mut Mistakes) {
                 FaceMatch::Face(_) | FaceMatch::Side(_) => {}
                 FaceMatch::None => mistakes.add(&at, || {
                     let listed: Vec<String> = nodes.iter().map(|node| quoted(node).to_string()).collect();
+                    let listed = listed.join(", ");
+                    if scope.model.dimension == 3 {
+                        return format!("no solid has a face of the nodes {listed}; all nodes of one face are expected");
+                    }
                     format!(
-                        "no solid has a face of the nodes {}, and in the plane no bar or beam of two nodes joins them; all nodes of one face \
-                         are expected (beams of three nodes have no sides: divide each into two)",
-                        listed.join(", ")
+                        "no solid has a face of the nodes {listed}, and no bar or beam of two nodes joins them; all nodes of one face \
+                         are expected (beams of three nodes have no sides: divide each into two)"
                     )
                 }),
                 FaceMatch::Inside => {

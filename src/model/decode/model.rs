@@ -200,6 +200,7 @@ pub(super) fn model(input: &Input, mistakes: &mut Mistakes) -> Option<Model> {
         sets: sets?,
         obstacles: obstacles?,
         contacts: contacts?,
+        posted_contacts: Vec::new(),
         stages: stages?,
     })
 }

@@ -32,7 +32,8 @@ pub(super) fn expand(model: &mut Model, analysis: &mut Analysis, mistakes: &mut 
         true
     });
     let at_contacts = at.member("contacts");
-    model.contacts = groups.contacts(std::mem::take(&mut model.contacts), &at_contacts, mistakes);
+    (model.contacts, model.posted_contacts) =
+        groups.contacts(std::mem::take(&mut model.contacts), &at_contacts, mistakes);
     let at_stages = at.member("stages");
     for (index, stage) in model.stages.iter_mut().enumerate() {
         let at = at_stages.index(index);
@@ -199,8 +200,12 @@ impl<'a> Groups<'a> {
             return Members::Mistaken;
         }
         if nodes.is_empty() {
-            mistakes.add(at, || {
-                format!("the set {} has no nodes: it lists none, and no element of the model by name", quoted(group))
+            mistakes.add(at, || match group.strip_prefix('@').filter(|name| self.surfaces.contains_key(*name)) {
+                Some(surface) => format!("the surface {} has no faces; one or more are expected", quoted(surface)),
+                None => format!(
+                    "the set {} has no nodes: it lists none, and no element of the model by name",
+                    quoted(group)
+                ),
             });
             return Members::Mistaken;
         }
@@ -287,8 +292,9 @@ impl<'a> Groups<'a> {
         all
     }
 
-    fn contacts(&self, given: Vec<Contact>, at: &DocumentPlace, mistakes: &mut Mistakes) -> Vec<Contact> {
-        let mut all = Vec::with_capacity(given.len());
+    /// The contacts of single nodes, and for each the index of the given one.
+    fn contacts(&self, given: Vec<Contact>, at: &DocumentPlace, mistakes: &mut Mistakes) -> (Vec<Contact>, Vec<usize>) {
+        let (mut all, mut origins) = (Vec::with_capacity(given.len()), Vec::with_capacity(given.len()));
         for (index, mut contact) in given.into_iter().enumerate() {
             let place = at.index(index);
             let member = if contact.names_whole_surface() { "surface" } else { "node" };
@@ -306,13 +312,14 @@ impl<'a> Groups<'a> {
                         mistakes.add(&place, || {
                             format!("with this set there are more than {MAX_CONTACTS} contacts, as many as are taken")
                         });
-                        return all;
+                        return (all, origins);
                     }
                     all.extend(nodes.iter().map(|node| Contact { node: node.clone(), ..contact.clone() }));
                 }
                 Members::Mistaken => {}
             }
+            origins.resize(all.len(), index);
         }
-        all
+        (all, origins)
     }
 }

@@ -197,6 +197,7 @@ fn model() -> impl Strategy<Value = Model> {
             sets,
             obstacles,
             contacts,
+            posted_contacts: Vec::new(),
             stages,
         }
     })

@@ -57,7 +57,7 @@ impl<'a> DocumentPlace<'a> {
 /// Places at which a repeated mistake is listed.
 const MOST_REPEATS: usize = 5;
 
-/// Collects mistakes: of those that are alike the first [`MOST_REPEATS`], and up to [`MAX_LISTED_MISTAKES`] in all; the
+/// Collects mistakes, each once: of those that are alike the first [`MOST_REPEATS`], and up to [`MAX_LISTED_MISTAKES`] in all; the
 /// others are counted.
 #[derive(Debug, Default)]
 pub(crate) struct Mistakes {
@@ -80,6 +80,10 @@ struct Repeats {
 impl Mistakes {
     pub fn add<Text: Into<String>>(&mut self, at: &DocumentPlace, detail: impl FnOnce() -> Text) {
         let error = InputError::new(at.pointer(), detail());
+        // A contact that stands for many has the same mistake many times.
+        if self.listed.contains(&error) {
+            return;
+        }
         let kind = kind_of(&error);
         let is_full = self.listed.len() >= MAX_LISTED_MISTAKES;
         if is_full && !self.kinds.contains_key(&kind) {

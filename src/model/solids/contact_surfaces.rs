@@ -4,6 +4,7 @@ use crate::mechanics::contact::bodies::PlaneVector;
 use crate::mechanics::contact::bodies::mortar::MortarNode;
 use crate::mechanics::contact::bodies::node_to_surface::NodeToSurface;
 use crate::mechanics::contact::bodies::opposite_surface::{OppositeSurface, SurfaceError};
+use crate::mechanics::contact::bodies::self_contact::crossed;
 use crate::mechanics::contact::bodies::space::mortar::MortarNodeInSpace;
 use crate::mechanics::contact::bodies::space::surface::{SurfaceInSpace, SurfaceInSpaceError};
 use crate::mechanics::contact::kinematics::CoupledKinematics;
@@ -11,6 +12,7 @@ use crate::mechanics::contact::vector::{Vector, add, size};
 use crate::model::input::limits::PENETRATION_TOLERANCE;
 use crate::model::input::names::quoted;
 use crate::model::request::{Contact, ContactDiscretisation, Element, Model, PlaneCondition};
+use crate::model::solids::closed_surfaces::begin_away_from_contact;
 use crate::model::solids::faces::{FaceMatch, surface_faces};
 use crate::resources::budget;
 use smallvec::SmallVec;
@@ -22,6 +24,9 @@ use std::sync::Arc;
 const MESHED_PENETRATION: f64 = 0.05;
 
 const NO_FACES: &str = "the surface has faces that are none";
+
+/// Which side of a surface in the plane is free.
+const FREE_SIDE: &str = " (the free side of bars and beams is to the left of the order of a face's nodes)";
 
 /// How often a surface is gone through for each of its contacts.
 const GONE_THROUGH: usize = 10;
@@ -86,8 +91,14 @@ impl<'a> ContactSurfaces<'a> {
     /// contact asks for them.
     pub fn new(model: &'a Model, unit: f64) -> Self {
         let bodies = model.contacts.iter().filter(|contact| contact.against.is_some());
-        let named: HashSet<&str> =
-            bodies.flat_map(|contact| [contact.surface.as_deref(), contact.against.as_deref()]).flatten().collect();
+        let may_touch_itself = |name: &str| {
+            bodies.clone().any(|contact| contact.touches_itself() && contact.surface.as_deref() == Some(name))
+        };
+        let named: HashSet<&str> = bodies
+            .clone()
+            .flat_map(|contact| [contact.surface.as_deref(), contact.against.as_deref()])
+            .flatten()
+            .collect();
         let first = model.nodes.values().next();
         let origin = first.map_or([0.0; 3], |place| [0, 1, 2].map(|k| place.get(k).copied().unwrap_or(0.0)));
         let mut built = Self { model, unit, origin, surfaces: HashMap::new() };
@@ -95,7 +106,9 @@ impl<'a> ContactSurfaces<'a> {
             let all = model.surfaces.keys().zip(surface_faces(model));
             for (name, faces) in all.filter(|(name, _)| named.contains(name.as_str())) {
                 let surface = match model.dimension {
-                    2 => built.surface(&faces).map(|surface| TouchedSurface::Plane(Arc::new(surface))),
+                    2 => built
+                        .surface(&faces, may_touch_itself(name))
+                        .map(|surface| TouchedSurface::Plane(Arc::new(surface))),
                     _ => built.surface_in_space(&faces).map(|surface| TouchedSurface::Space(Arc::new(surface))),
                 };
                 built.surfaces.insert(name.as_str(), surface);
@@ -149,7 +162,7 @@ impl<'a> ContactSurfaces<'a> {
         })
     }
 
-    fn surface(&self, faces: &[FaceMatch]) -> Result<OppositeSurface, String> {
+    fn surface(&self, faces: &[FaceMatch], may_touch_itself: bool) -> Result<OppositeSurface, String> {
         let mut lines = Vec::with_capacity(faces.len());
         for face in faces {
             match face {
@@ -173,6 +186,9 @@ impl<'a> ContactSurfaces<'a> {
                 FaceMatch::Side(nodes) => lines.push(*nodes),
                 FaceMatch::None | FaceMatch::Inside => return Err(NO_FACES.to_owned()),
             }
+        }
+        if may_touch_itself {
+            lines = begin_away_from_contact(&lines, |node| self.place_in_plane(node));
         }
         let name = |node: usize| self.name(node);
         OppositeSurface::new(&lines, |node| self.place_in_plane(node)).map_err(|error| match error {
@@ -213,8 +229,11 @@ impl<'a> ContactSurfaces<'a> {
         // The whole surface is gone through several times.
         budget::spend(GONE_THROUGH * opposite.faces());
         let name = || quoted(&contact.node).to_string();
+        if contact.touches_itself() {
+            return self.contact_with_itself(contact, node, &opposite);
+        }
         if opposite.nodes().contains(&node) {
-            return Err(("against", touches_itself(&name(), against)));
+            return Err(("against", shared_node(&name(), against)));
         }
         let (kinematics, gap, face) = match contact.discretisation.unwrap_or_default() {
             ContactDiscretisation::Mortar => self.mortar(contact, node, &opposite)?,
@@ -222,7 +241,7 @@ impl<'a> ContactSurfaces<'a> {
         };
         let own = &kinematics.nodes()[..kinematics.own_nodes()];
         if let Some(shared) = own.iter().find(|node| opposite.nodes().contains(node)) {
-            return Err(("against", touches_itself(&self.name(*shared), against)));
+            return Err(("against", shared_node(&self.name(*shared), against)));
         }
         if kinematics.beyond_end(&|_| 0.0).is_some() {
             // Past the end of the surface there is no contact yet.
@@ -232,19 +251,78 @@ impl<'a> ContactSurfaces<'a> {
         let is_deep = gap < -MESHED_PENETRATION * face && !self.is_apart(node, &kinematics, &opposite);
         if !gap.is_finite() || is_behind || is_deep {
             let found = if is_behind { -gap.abs() } else { gap } * self.unit;
+            let side = match opposite {
+                TouchedSurface::Plane(_) => FREE_SIDE,
+                TouchedSurface::Space(_) => "",
+            };
             let why = format!(
-                "{} is behind the surface {} at the start, gap {found:?}; a gap of 0 or more is expected (the free side of bars \
-                 and beams is to the left of the order of a face's nodes)",
+                "{} is behind the surface {} at the start, gap {found:?}; a gap of 0 or more is expected{side}",
                 name(),
                 quoted(against)
             );
             return Err(("node", why));
         }
+        Ok(self.closed_or_open(kinematics, gap))
+    }
+
+    /// A contact whose gap at the start is not wrong: of 0 where it is one of round-off or of the meshes.
+    fn closed_or_open(&self, kinematics: Arc<dyn CoupledKinematics>, gap: f64) -> BodyContact {
         let reach = kinematics.nodes().iter().filter_map(|node| self.model.nodes.get_index(*node));
         let reach = reach.flat_map(|(_, place)| place).fold(0.0_f64, |most, value| most.max(value.abs())) / self.unit;
         let closed = gap <= PENETRATION_TOLERANCE + 4.0 * f64::EPSILON * reach;
         let overlap = if gap < -PENETRATION_TOLERANCE - 4.0 * f64::EPSILON * reach { -gap } else { 0.0 };
-        Ok(BodyContact { kinematics, gap: if closed { 0.0 } else { gap }, overlap })
+        BodyContact { kinematics, gap: if closed { 0.0 } else { gap }, overlap }
+    }
+
+    /// A node with the surface that it belongs to.
+    fn contact_with_itself(
+        &self,
+        contact: &Contact,
+        node: usize,
+        surface: &TouchedSurface,
+    ) -> Result<BodyContact, BodyContactMistake> {
+        let TouchedSurface::Plane(surface) = surface else {
+            let why = "in space a surface does not touch itself in this version: name the parts that may meet as two \
+                       surfaces without common nodes";
+            return Err(("against", why.to_owned()));
+        };
+        if contact.discretisation == Some(ContactDiscretisation::NodeToSurface) {
+            let why = "a surface touches itself by mortar contacts: leave `discretisation` out";
+            return Err(("discretisation", why.to_owned()));
+        }
+        let Some(at) = surface.nodes.iter().position(|one| *one == node) else {
+            let name = contact.against.as_deref().unwrap_or_default();
+            return Err(("node", format!("{} is no node of {}", self.name(node), quoted(name))));
+        };
+        for own in surface.faces_at(at).into_iter().flatten() {
+            if let Some(other) = crossed(surface, own) {
+                let named = |face: usize| surface.faces[face].nodes.map(|node| self.name(surface.nodes[node]));
+                let ([a, b], [c, d]) = (named(own), named(other));
+                let why =
+                    format!("the surface crosses itself at the start: its face from {a} to {b} that from {c} to {d}");
+                return Err(("against", why));
+            }
+        }
+        let kinematics = MortarNode::in_itself(at, Arc::clone(surface));
+        let gap = kinematics.initial_gap();
+        let face = self.shortest_face(&kinematics);
+        if gap < -MESHED_PENETRATION * face && !kinematics.clearance(&|_| 0.0).is_some_and(|(way, _)| way > 0.0) {
+            let why = format!(
+                "{} is behind its own surface at the start, gap {:?}; a gap of 0 or more is expected{FREE_SIDE}",
+                self.name(node),
+                gap * self.unit
+            );
+            return Err(("node", why));
+        }
+        Ok(self.closed_or_open(Arc::new(kinematics), gap))
+    }
+
+    /// The shortest of the faces at the node of a contact.
+    fn shortest_face(&self, kinematics: &dyn CoupledKinematics) -> f64 {
+        let own = &kinematics.nodes()[..kinematics.own_nodes()];
+        let place = self.place(own[0]);
+        let away = own[1..].iter().map(|other| size(&add(&self.place(*other), -1.0, &place)));
+        away.fold(f64::INFINITY, f64::min)
     }
 
     /// A node with the faces of its surface.
@@ -264,8 +342,6 @@ impl<'a> ContactSurfaces<'a> {
             let surface = quoted(contact.surface.as_deref().unwrap_or_default()).to_string();
             return Err(("node", format!("{} is no node of {surface}", self.name(node))));
         };
-        let place = self.place(node);
-        let away = |other: usize| size(&add(&self.place(other), -1.0, &place));
         match (own, opposite) {
             (TouchedSurface::Plane(own), TouchedSurface::Plane(opposite)) => {
                 let beside = own.faces_at(at);
@@ -273,15 +349,14 @@ impl<'a> ContactSurfaces<'a> {
                 let place = |node: usize| self.place_in_plane(node);
                 let kinematics = MortarNode::new(node, neighbours, Arc::clone(opposite), place);
                 let gap = kinematics.initial_gap();
-                let face = neighbours.into_iter().flatten().map(away).fold(f64::INFINITY, f64::min);
+                let face = self.shortest_face(&kinematics);
                 Ok((Arc::new(kinematics), gap, face))
             }
             (TouchedSurface::Space(own), TouchedSurface::Space(opposite)) => {
                 let is_held = |node: usize| self.is_held(node);
                 let kinematics = MortarNodeInSpace::new(at, &own, Arc::clone(opposite), is_held);
                 let gap = kinematics.initial_gap();
-                let others = &kinematics.nodes()[1..kinematics.own_nodes()];
-                let face = others.iter().copied().map(away).fold(f64::INFINITY, f64::min);
+                let face = self.shortest_face(&kinematics);
                 Ok((Arc::new(kinematics), gap, face))
             }
             // All surfaces of a model are of its dimension.
@@ -307,6 +382,10 @@ impl<'a> ContactSurfaces<'a> {
     }
 }
 
-fn touches_itself(node: &str, against: &str) -> String {
-    format!("{node} is a node of {}, too; a surface does not touch itself in this version", quoted(against))
+fn shared_node(node: &str, against: &str) -> String {
+    format!(
+        "{node} is a node of {}, too; two surfaces have no common nodes, and one that may touch itself is both `surface` \
+         and `against`",
+        quoted(against)
+    )
 }

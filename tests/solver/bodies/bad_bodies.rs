@@ -47,7 +47,21 @@ fn what_makes_no_contact_of_bodies_is_refused_with_its_place() {
         &format!("{contact}/against"),
         &["obstacle has the name"],
     );
-    refused(|model| model["contacts"][0]["against"] = json!("above"), &format!("{contact}/against"), &["itself"]);
+    refused(
+        |model| {
+            model["contacts"][0]["against"] = json!("above");
+            model["contacts"][0]["discretisation"] = json!("node_to_surface");
+        },
+        &format!("{contact}/discretisation"),
+        &["itself", "mortar"],
+    );
+    // A contact of all nodes of a surface before it does not shift the place of another.
+    let another = json!({"surface": "above", "against": "belov", "friction": 0.1});
+    refused(
+        |model| model["contacts"].as_array_mut().expect("contacts").push(another),
+        "/model/contacts/1/against",
+        &["belov"],
+    );
     // The upper block begins inside the lower one.
     refused(
         |model| {

@@ -5,6 +5,7 @@ mod bad_bodies;
 mod blocks;
 mod bricks;
 mod hertz;
+mod itself;
 mod random_pairs;
 mod spheres;
 mod tube;

@@ -15,6 +15,10 @@ use std::f64::consts::TAU;
 /// A ring of so many beams, oval by a part of its radius, under a pressure up to a bound. Its upper and lower parts, inside,
 /// are surfaces that may touch.
 fn tube(count: usize, oval: f64, friction: f64, until: f64) -> JobRequest {
+    request(&posted(count, oval, friction, until).to_string())
+}
+
+fn posted(count: usize, oval: f64, friction: f64, until: f64) -> Value {
     let name = |k: usize| format!("n{}", k % count);
     let place = |k: usize| {
         let angle = TAU * k as f64 / count as f64;
@@ -27,7 +31,7 @@ fn tube(count: usize, oval: f64, friction: f64, until: f64) -> JobRequest {
     let inside = |from: usize, to: usize| (from..to).map(|k| json!([name(k), name(k + 1)])).collect::<Vec<_>>();
     let outside: Vec<Value> = (0..count).map(|k| json!([name(k + 1), name(k)])).collect();
     let eighth = count / 8;
-    let text = json!({
+    json!({
         "model": {
             "dimension": 2, "nodes": nodes, "elements": (0..count).map(beam).collect::<Vec<_>>(),
             // On the axes of symmetry; the upper side may move to a side over the lower one.
@@ -38,8 +42,17 @@ fn tube(count: usize, oval: f64, friction: f64, until: f64) -> JobRequest {
             "stages": [{"name": "press", "pressures": {"outside": 1}, "until": {"load_above": until}}],
         },
         "analysis": {"arc_length": {"initial": 1, "max": 50}, "record": {"elements": "none"}},
-    });
-    request(&text.to_string())
+    })
+}
+
+/// The tube with its whole inside as one surface that may touch itself, and begins after the given beam.
+fn tube_in_itself(count: usize, friction: f64, until: f64, seam: usize) -> JobRequest {
+    let mut posted = posted(count, 1e-5, friction, until);
+    let name = |k: usize| format!("n{}", k % count);
+    let faces: Vec<Value> = (seam..seam + count).map(|k| json!([name(k), name(k + 1)])).collect();
+    posted["model"]["surfaces"]["inside"] = json!({"faces": faces});
+    posted["model"]["contacts"] = json!([{"surface": "inside", "against": "inside", "friction": friction}]);
+    request(&posted.to_string())
 }
 
 fn path(request: &JobRequest) -> Vec<Increment> {
@@ -103,4 +116,28 @@ fn the_opposite_sides_of_a_tube_meet() {
     close(extrapolated(once[0], once[1], 4), 5.247, 1e-3, "pressure at which a point meets a point");
     let once = [extrapolated(coarse[1], fine[1], 1), extrapolated(fine[1], finest[1], 1)];
     close(extrapolated(once[0], once[1], 2), 10.34, 0.05, "pressure from which a line touches");
+}
+
+/// The inside as one surface gives the path of its two sides as surfaces. It begins at an end of its longer axis, the first
+/// one listed, so that the lower or the upper side carries the multipliers.
+#[test]
+fn a_tube_touches_itself() {
+    let (count, until) = (32, 11.5);
+    let sides = |surface: &str, against: &str| {
+        let mut two = posted(count, 1e-5, 0.3, until);
+        two["model"]["contacts"] = json!([{"surface": surface, "against": against, "friction": 0.3}]);
+        path(&request(&two.to_string()))
+    };
+    let meeting = |increments: &[Increment]| {
+        let met = increments.iter().find(|increment| increment.point.kind == PointKind::ContactChange);
+        met.expect("a contact").load_factor
+    };
+    let top = |increments: &[Increment]| increments.last().expect("an end").displacements["n8"].to_vec();
+    let [lower, upper] = [sides("lower", "upper"), sides("upper", "lower")];
+    for (seam, two) in [(30, &lower), (7, &upper)] {
+        let one = path(&tube_in_itself(count, 0.3, until, seam));
+        println!("{seam}: {} {}, {:?} {:?}", meeting(&one), meeting(two), top(&one), top(two));
+        close(meeting(&one), meeting(two), 1e-9, "pressure at which the sides meet");
+        (0..2).for_each(|k| close(top(&one)[k], top(two)[k], 1e-9, "place of the top at the end"));
+    }
 }

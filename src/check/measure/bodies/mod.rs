@@ -1,6 +1,7 @@
 //! Contacts between bodies as posted, in terms of their own: mean gaps by quadrature, nearest points by sampling, derivatives by
 //! dual numbers.
 
+mod itself;
 mod plane;
 mod space;
 pub(super) mod surface;
@@ -16,6 +17,8 @@ use nalgebra::Matrix3;
 const COVERED: f64 = 1e-8;
 /// Faces that are behind by more than this part of the own face belong to the far side of a body.
 const FAR_BEHIND: f64 = 0.5;
+/// Faces in the plane that are steeper than this over the own face belong to another side of a corner.
+const STEEP: f64 = 4.0;
 /// Roundings of coordinates in a gap.
 const ROUNDINGS: f64 = 64.0;
 

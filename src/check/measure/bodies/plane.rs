@@ -2,8 +2,9 @@
 //! projected nodes and the mass matrix of the covered part, the nearest point of a smoothed surface by sampling and
 //! bisection; derivatives by dual numbers, one degree of freedom at a time.
 
+use crate::check::measure::bodies::itself::{MeasuredOwnFace, Touchable, faces_in_itself};
 use crate::check::measure::bodies::surface::{OppositeFace, TouchedSurfaces};
-use crate::check::measure::bodies::{BodyPlace, BodyState, COVERED, FAR_BEHIND, ROUNDINGS, near};
+use crate::check::measure::bodies::{BodyPlace, BodyState, COVERED, FAR_BEHIND, ROUNDINGS, STEEP, near};
 use crate::check::measure::numbers::{DualNumber, MeasuredVector, largest};
 use crate::model::request::{Contact, ContactDiscretisation};
 use std::sync::Arc;
@@ -23,7 +24,9 @@ type NumberPair = [PlaneNumber; 2];
 #[derive(Debug, Clone)]
 pub(in crate::check::measure) struct MeasuredBodyInPlane {
     /// Faces at the node, each in its order; none where the node itself touches.
-    faces: Vec<[usize; 2]>,
+    faces: Vec<MeasuredOwnFace>,
+    /// Whether the surface touches itself.
+    itself: bool,
     node: usize,
     /// Faces of the opposite surface in order, with their coordinates along it and the length of a closed chain.
     opposite: Arc<[OppositeFace]>,
@@ -56,17 +59,21 @@ impl MeasuredBodyInPlane {
     /// The contact of a checked model: a node, and the surface that it touches.
     pub fn new(contact: &Contact, (node, against): (usize, &str), surfaces: &TouchedSurfaces) -> Option<Self> {
         let lines = contact.surface.as_deref().and_then(|surface| surfaces.lines.get(surface));
+        let opposite = Arc::clone(surfaces.faces.get(against)?);
+        let places = Arc::clone(&surfaces.places);
+        let itself = contact.touches_itself();
+        let of_body =
+            |nodes: &[usize; 2]| MeasuredOwnFace { nodes: *nodes, is_alone: false, touchable: Touchable::All };
         let faces = match contact.discretisation.unwrap_or_default() {
+            ContactDiscretisation::Mortar if itself => faces_in_itself(node, &opposite, &places),
             ContactDiscretisation::Mortar => {
-                lines.into_iter().flatten().filter(|line| line.contains(&node)).copied().collect()
+                lines.into_iter().flatten().filter(|line| line.contains(&node)).map(of_body).collect()
             }
             ContactDiscretisation::NodeToSurface => Vec::new(),
         };
-        let opposite = Arc::clone(surfaces.faces.get(against)?);
-        let places = Arc::clone(&surfaces.places);
         let reach = opposite.iter().flat_map(|face| face.nodes).chain([node]).map(|node| largest(&places[node]));
         let reach = reach.fold(0.0, f64::max);
-        let mut body = Self { faces, node, opposite, places, overlap: 0.0, reach };
+        let mut body = Self { faces, itself, node, opposite, places, overlap: 0.0, reach };
         let still = &surfaces.no_displacements;
         // Past the end of the surface there is no contact yet.
         body.overlap = if body.open_gap(still) > 0.0 { 0.0 } else { body.gap(still).min(0.0) };
@@ -83,7 +90,7 @@ impl MeasuredBodyInPlane {
         let still = |node: usize| [0, 1].map(|k| PlaneNumber::constant(position(node)[k]));
         let found = self.found(&still);
         let at_rest = self.values(&found, &still);
-        let own: Vec<usize> = self.faces.iter().flatten().copied().chain([self.node]).collect();
+        let own: Vec<usize> = self.faces.iter().flat_map(|face| face.nodes).chain([self.node]).collect();
         let opposite = found.faces.iter().flat_map(|face| self.nodes_of(*face));
         let mut nodes: Vec<usize> = own.iter().copied().chain(opposite).collect();
         nodes.sort_unstable();
@@ -146,7 +153,15 @@ impl MeasuredBodyInPlane {
             let share = ((point - first).dot(&edge) / edge.norm_squared()).clamp(0.0, 1.0);
             (point - first - edge * share).norm()
         };
-        self.opposite.iter().map(|face| from_line(face.nodes)).fold(f64::INFINITY, f64::min)
+        let all = self.opposite.iter().enumerate().filter(|(index, _)| self.is_touchable(*index));
+        all.map(|(_, face)| from_line(face.nodes)).fold(self.farthest(), f64::min)
+    }
+
+    /// A bound of distances: a node of a surface that touches itself may look at nothing, and is then as far away as the
+    /// surface is long.
+    fn farthest(&self) -> f64 {
+        let length = || self.opposite.iter().map(|face| face.along[1] - face.along[0]).sum();
+        if self.itself { length() } else { f64::INFINITY }
     }
 
     /// The nodes that the shape of an opposite face depends on.
@@ -167,44 +182,92 @@ impl MeasuredBodyInPlane {
             return self.nearest(point);
         }
         // Whether a face covers a part of the node's faces: itself, and with what goes on beyond an end of the surface.
-        let covers = |face: &OppositeFace| {
+        let covers = |index: usize| {
+            let face = &self.opposite[index];
+            let goes_on = self.goes_on(face);
             let mut found = [false; 2];
-            for [first, last] in &self.faces {
+            for MeasuredOwnFace { nodes: [first, last], .. } in self.faces.iter().filter(|own| own.touchable.has(index))
+            {
                 let (start, edge) = (point(*first), minus(point(*last), point(*first)));
                 let square = product(edge, edge).0;
                 let [high, low] = face.nodes.map(|node| product(minus(point(node), start), edge).0 / square);
                 let left = [edge[1].times(-1.0), edge[0]];
                 let heights = face.nodes.map(|node| product(minus(point(node), start), left).0 / square);
-                if low >= high || heights[0].max(heights[1]) < -FAR_BEHIND {
+                if is_aside(high - low, heights, 1.0) {
                     continue;
                 }
                 found[0] |= high.min(1.0) - low.max(0.0) > COVERED;
-                let high = if face.beside[0].is_none() { 1.0 } else { high.min(1.0) };
-                let low = if face.beside[1].is_none() { 0.0 } else { low.max(0.0) };
+                let high = if goes_on[0] { 1.0 } else { high.min(1.0) };
+                let low = if goes_on[1] { 0.0 } else { low.max(0.0) };
                 found[1] |= high - low > COVERED;
             }
             found
         };
-        let chain = self.nearest_chain(point);
-        let of_chain = (0..self.opposite.len()).filter(|face| self.opposite[*face].chain == chain);
-        let found: Vec<(usize, [bool; 2])> = of_chain.map(|face| (face, covers(&self.opposite[face]))).collect();
+        let in_front = if self.itself { self.nearest_layer(point) } else { self.nearest_chain(point) };
+        let found: Vec<(usize, [bool; 2])> = in_front.into_iter().map(|face| (face, covers(face))).collect();
         let is_covered = found.iter().any(|(_, covers)| covers[0]);
         let faces = found.iter().filter(|(_, covers)| is_covered && covers[1]).map(|(face, _)| *face).collect();
         OppositePart { faces, place: 0.0, slope: 1.0 }
     }
 
+    /// Whether an opposite face goes on straight beyond its nodes.
+    fn goes_on(&self, face: &OppositeFace) -> [bool; 2] {
+        let is_first = self.itself && face.along[0] == 0.0;
+        [face.beside[0].is_none() || is_first, face.beside[1].is_none()]
+    }
+
+    /// Whether one of the faces at the node may touch a face; all may where there are none.
+    fn is_touchable(&self, face: usize) -> bool {
+        self.faces.is_empty() || self.faces.iter().any(|own| own.touchable.has(face))
+    }
+
+    /// The square of the distance of the node from an opposite face.
+    fn square_from(&self, face: &OppositeFace, point: &dyn Fn(usize) -> NumberPair) -> f64 {
+        let ([first, last], own) = (face.nodes.map(point), point(self.node));
+        let (edge, from) = (minus(last, first), minus(own, first));
+        let share = (product(edge, from).0 / product(edge, edge).0).clamp(0.0, 1.0);
+        let rest = minus(from, edge.map(|part| part.times(share)));
+        product(rest, rest).0
+    }
+
     /// The chain of opposite faces that is nearest to the node.
-    fn nearest_chain(&self, point: &dyn Fn(usize) -> NumberPair) -> usize {
-        let own = point(self.node);
-        let distance = |face: &OppositeFace| {
-            let [first, last] = face.nodes.map(point);
-            let (edge, from) = (minus(last, first), minus(own, first));
-            let share = (product(edge, from).0 / product(edge, edge).0).clamp(0.0, 1.0);
-            let rest = minus(from, edge.map(|part| part.times(share)));
-            product(rest, rest).0
-        };
+    fn nearest_chain(&self, point: &dyn Fn(usize) -> NumberPair) -> Vec<usize> {
+        let distance = |face: &OppositeFace| self.square_from(face, point);
         let nearest = self.opposite.iter().min_by(|one, other| distance(one).total_cmp(&distance(other)));
-        nearest.map_or(0, |face| face.chain)
+        let chain = nearest.map_or(0, |face| face.chain);
+        (0..self.opposite.len()).filter(|face| self.opposite[*face].chain == chain).collect()
+    }
+
+    /// Of a surface that touches itself the faces that follow one another, run against the surface at the node, and are
+    /// nearest to it.
+    fn nearest_layer(&self, point: &dyn Fn(usize) -> NumberPair) -> Vec<usize> {
+        let mut along = MeasuredVector::zeros();
+        for [first, last] in self.faces.iter().map(|face| face.nodes.map(point)) {
+            along += MeasuredVector::new(last[0].0 - first[0].0, last[1].0 - first[1].0, 0.0).normalize();
+        }
+        let runs_against = |face: &usize| {
+            let [first, last] = self.opposite[*face].nodes.map(point);
+            (last[0].0 - first[0].0) * along.x + (last[1].0 - first[1].0) * along.y < 0.0
+        };
+        let of_rank = |face: &usize| self.opposite[*face].rank;
+        let mut facing: Vec<usize> =
+            (0..self.opposite.len()).filter(|face| self.is_touchable(*face) && runs_against(face)).collect();
+        facing.sort_by_key(of_rank);
+        let (mut best, mut layer) = ((f64::INFINITY, Vec::new()), (f64::INFINITY, Vec::<usize>::new()));
+        for face in facing {
+            let goes_on = layer.1.last().is_some_and(|last| {
+                of_rank(last) + 1 == of_rank(&face) && self.opposite[*last].chain == self.opposite[face].chain
+            });
+            if !goes_on {
+                layer = (f64::INFINITY, Vec::new());
+            }
+            layer.1.push(face);
+            layer.0 = layer.0.min(self.square_from(&self.opposite[face], point));
+            if layer.0 < best.0 || layer.1.first() == best.1.first() {
+                best = layer.clone();
+            }
+        }
+        best.1
     }
 
     fn values(&self, found: &OppositePart, point: &dyn Fn(usize) -> NumberPair) -> MeasuredGap {
@@ -222,9 +285,9 @@ impl MeasuredBodyInPlane {
             let share = ((point - first).dot(&edge) / edge.norm_squared()).clamp(0.0, 1.0);
             (point - first - edge * share).norm()
         };
-        let mut least = f64::INFINITY;
-        for own in &self.faces {
-            for other in self.opposite.iter() {
+        let mut least = self.farthest();
+        for MeasuredOwnFace { nodes: own, touchable, .. } in &self.faces {
+            for (_, other) in self.opposite.iter().enumerate().filter(|(index, _)| touchable.has(*index)) {
                 least = own.iter().fold(least, |least, node| least.min(from_line(position(*node), other.nodes)));
                 least = other.nodes.iter().fold(least, |least, node| least.min(from_line(position(*node), *own)));
             }
@@ -238,7 +301,7 @@ impl MeasuredBodyInPlane {
         let [mut weights, mut gaps, mut places, mut lengths, mut undeformed] = [zero; 5];
         let mut reference: Option<f64> = None;
         let mut period = None;
-        for [first, last] in &self.faces {
+        for MeasuredOwnFace { nodes: [first, last], is_alone, touchable } in &self.faces {
             let (start, end) = (point(*first), point(*last));
             let edge = minus(end, start);
             let length = root(product(edge, edge));
@@ -247,15 +310,16 @@ impl MeasuredBodyInPlane {
             // Sums over the covered part: of the shape functions, of their products, of their products with the distance
             // and with the position.
             let (mut shares, mut mass, mut heights, mut positions) = ([zero; 2], [zero; 3], [zero; 2], [zero; 2]);
-            for face in found.faces.iter().map(|face| &self.opposite[*face]) {
+            for face in found.faces.iter().filter(|face| touchable.has(**face)).map(|face| &self.opposite[*face]) {
+                let goes_on = self.goes_on(face);
                 let ends = face.nodes.map(|node| minus(point(node), start));
                 let [high, low] = ends.map(|end| product(end, along));
                 let [height_high, height_low] = ends.map(|end| product(end, across));
                 // The last face goes on straight beyond an end of the surface.
-                let from = if face.beside[1].is_none() { zero } else { larger(low, zero) };
-                let to = if face.beside[0].is_none() { length } else { smaller(high, length) };
-                let behind = height_high.0.max(height_low.0) < -FAR_BEHIND * length.0;
-                if high.0 <= low.0 || behind || to.0 - from.0 <= COVERED * length.0 {
+                let from = if goes_on[1] { zero } else { larger(low, zero) };
+                let to = if goes_on[0] { length } else { smaller(high, length) };
+                let is_aside = is_aside(high.0 - low.0, [height_high.0, height_low.0], length.0);
+                if is_aside || to.0 - from.0 <= COVERED * length.0 {
                     continue;
                 }
                 let origin = *reference.get_or_insert(face.along[0]);
@@ -283,6 +347,12 @@ impl MeasuredBodyInPlane {
                 undeformed = undeformed.plus(width.by(reference_length).over(high.minus(low)));
             }
             if shares[0].0 + shares[1].0 <= 0.0 {
+                continue;
+            }
+            if *is_alone {
+                weights = weights.plus(shares[0]).plus(shares[1]);
+                gaps = gaps.plus(heights[0]).plus(heights[1]);
+                places = places.plus(positions[0]).plus(positions[1]);
                 continue;
             }
             let own = usize::from(*last == self.node);
@@ -424,6 +494,12 @@ impl MeasuredBodyInPlane {
         let gap = from[1].by(tangent[0]).minus(from[0].by(tangent[1])).over(size);
         MeasuredGap { gap, place: position, stretch: size.over(advance), period: self.opposite[face].period }
     }
+}
+
+/// Whether a face that goes back by `advance` along one of a length, between two heights over it, is not in front of it.
+fn is_aside(advance: f64, heights: [f64; 2], length: f64) -> bool {
+    let is_behind = heights[0].max(heights[1]) < -FAR_BEHIND * length;
+    advance <= 0.0 || (heights[1] - heights[0]).abs() > STEEP * advance || is_behind
 }
 
 /// Values and slopes of the cubic B-spline's functions on a face; beyond an end of the surface those of a straight line.

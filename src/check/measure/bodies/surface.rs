@@ -1,7 +1,8 @@
 //! The surfaces that bodies touch, as posted: their faces in order, with the coordinates along them.
 
 use crate::check::measure::numbers::{MeasuredVector, padded};
-use crate::model::request::{Element, Model};
+use crate::model::request::{Element, Model, Surface};
+use crate::model::solids::closed_surfaces::begin_away_from_contact;
 use crate::model::solids::faces::{FaceMatch, surface_faces};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -15,6 +16,8 @@ pub(super) struct OppositeFace {
     pub period: Option<f64>,
     /// Number of its chain: the index of the chain's first face.
     pub chain: usize,
+    /// Its place in the order of all faces, chain by chain.
+    pub rank: usize,
 }
 
 /// The surfaces that contacts of bodies name, each read once.
@@ -65,10 +68,18 @@ impl<'a> TouchedSurfaces<'a> {
             Some(if is_on_the_right { [numbers[1], numbers[0]] } else { numbers })
         };
         let surfaces = model.surfaces.iter().filter(|(name, _)| named.contains(name.as_str()));
-        let lines: HashMap<&str, Vec<[usize; 2]>> = surfaces
-            .map(|(name, surface)| (name.as_str(), surface.faces.iter().filter_map(oriented).collect()))
-            .collect();
         let places: Arc<[MeasuredVector]> = model.nodes.values().map(|place| padded(place)).collect();
+        let of_itself: HashSet<&str> =
+            bodies().filter(|one| one.touches_itself()).filter_map(|one| one.surface.as_deref()).collect();
+        let in_order_of_parts = |(name, surface): (&'a String, &Surface)| {
+            let lines: Vec<[usize; 2]> = surface.faces.iter().filter_map(oriented).collect();
+            if !of_itself.contains(name.as_str()) {
+                return (name.as_str(), lines);
+            }
+            let place = |node: usize| [places[node].x, places[node].y];
+            (name.as_str(), begin_away_from_contact(&lines, place))
+        };
+        let lines: HashMap<&str, Vec<[usize; 2]>> = surfaces.map(in_order_of_parts).collect();
         let touched = lines.iter().filter(|(name, _)| against.contains(*name));
         let faces = touched.map(|(name, lines)| (*name, in_order(lines, &places).into())).collect();
         let no_displacements = vec![MeasuredVector::zeros(); places.len()];
@@ -113,6 +124,8 @@ fn in_order(lines: &[[usize; 2]], places: &[MeasuredVector]) -> Vec<OppositeFace
     let mut along = vec![None; lines.len()];
     let mut periods = vec![None; lines.len()];
     let mut chains = vec![0; lines.len()];
+    let mut ranks = vec![0; lines.len()];
+    let mut met = 0;
     for start in 0..lines.len() {
         if along[start].is_some() {
             continue;
@@ -127,6 +140,8 @@ fn in_order(lines: &[[usize; 2]], places: &[MeasuredVector]) -> Vec<OppositeFace
             let to = from + (end - start).norm();
             along[face] = Some([from, to]);
             chains[face] = first;
+            ranks[face] = met;
+            met += 1;
             chain.push(face);
             from = to;
             match beginning.get(&lines[face][1]) {
@@ -138,13 +153,14 @@ fn in_order(lines: &[[usize; 2]], places: &[MeasuredVector]) -> Vec<OppositeFace
         chain.into_iter().filter(|_| closed).for_each(|face| periods[face] = Some(from));
     }
     let beside = |line: &[usize; 2]| [ending.get(&line[0]).copied(), beginning.get(&line[1]).copied()];
-    let all = lines.iter().zip(along).zip(periods).zip(chains);
-    all.map(|(((nodes, along), period), chain)| OppositeFace {
+    let all = lines.iter().zip(along).zip(periods).zip(chains).zip(ranks);
+    all.map(|((((nodes, along), period), chain), rank)| OppositeFace {
         nodes: *nodes,
         along: along.unwrap_or_default(),
         beside: beside(nodes),
         period,
         chain,
+        rank,
     })
     .collect()
 }

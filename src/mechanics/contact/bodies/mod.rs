@@ -22,6 +22,7 @@ pub mod mortar;
 pub mod node_to_surface;
 pub mod opposite_surface;
 mod second_derivatives;
+pub mod self_contact;
 pub mod space;
 #[cfg(test)]
 mod tests;

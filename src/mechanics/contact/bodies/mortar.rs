@@ -20,12 +20,14 @@ use crate::mechanics::contact::bodies::opposite_surface::{
     OppositeSurface, SurfaceFace, distance_from_segment, distance_of_segments,
 };
 use crate::mechanics::contact::bodies::second_derivatives;
-use crate::mechanics::contact::bodies::tolerances::{DEEPEST, LAST_COVERED, LEAST_COVERED};
+use crate::mechanics::contact::bodies::self_contact::{OwnSurface, faces_of_node};
+use crate::mechanics::contact::bodies::tolerances::{DEEPEST, LAST_COVERED, LEAST_COVERED, STEEPEST};
 use crate::mechanics::contact::bodies::{PlaneVector, difference, product, turned_left};
 use crate::mechanics::contact::kinematics::{CoupledKinematics, LocalDisplacements};
 use crate::mechanics::contact::vector::Vector;
 use smallvec::SmallVec;
 use std::f64::consts::SQRT_2;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A node with its faces, in front of an opposite surface.
@@ -33,13 +35,23 @@ use std::sync::Arc;
 pub struct MortarNode {
     /// The node, its neighbours on its own surface, the nodes of the opposite surface.
     nodes: Vec<usize>,
-    /// The faces at the node, each with its first and last node as indices into `nodes`.
-    faces: SmallVec<[[usize; 2]; 2]>,
+    faces: SmallVec<[FaceOfNode; 2]>,
     /// Undeformed positions of the node and its neighbours.
     places: SmallVec<[PlaneVector; 3]>,
     opposite: Arc<OppositeSurface>,
+    /// Where the surface touches itself: what the node sees of it.
+    itself: Option<OwnSurface>,
     /// Gap and position along the opposite surface without displacements.
     start: (f64, f64),
+}
+
+/// A face at the node.
+#[derive(Debug, Clone, Copy)]
+struct FaceOfNode {
+    /// Its first and last node, as indices into those of the contact.
+    nodes: [usize; 2],
+    /// Whether the node is the only one of the face with a multiplier.
+    is_alone: bool,
 }
 
 impl MortarNode {
@@ -53,19 +65,46 @@ impl MortarNode {
     ) -> Self {
         let (mut nodes, mut faces) = (vec![own], SmallVec::new());
         if let Some(before) = before {
-            faces.push([nodes.len(), 0]);
+            faces.push(FaceOfNode { nodes: [nodes.len(), 0], is_alone: false });
             nodes.push(before);
         }
         if let Some(after) = after {
-            faces.push([0, nodes.len()]);
+            faces.push(FaceOfNode { nodes: [0, nodes.len()], is_alone: false });
             nodes.push(after);
         }
         let places = nodes.iter().map(|node| place(*node)).collect();
         nodes.extend(&opposite.nodes);
-        let mut node = Self { nodes, faces, places, opposite, start: (0.0, 0.0) };
-        let (gap, place, _) = node.values(&|_| 0.0);
-        node.start = (gap, place);
-        node
+        Self { nodes, faces, places, opposite, itself: None, start: (0.0, 0.0) }.started()
+    }
+
+    /// The kinematics of a node (an index into those of the surface) of a surface that touches itself.
+    pub fn in_itself(node: usize, surface: Arc<OppositeSurface>) -> Self {
+        let at_node = faces_of_node(&surface, node);
+        let mut met: SmallVec<[usize; 3]> = SmallVec::from_slice(&[node]);
+        let faces = at_node
+            .iter()
+            .map(|face| {
+                let nodes = surface.faces[face.index].nodes.map(|one| {
+                    met.iter().position(|other| *other == one).unwrap_or_else(|| {
+                        met.push(one);
+                        met.len() - 1
+                    })
+                });
+                FaceOfNode { nodes, is_alone: face.is_alone }
+            })
+            .collect();
+        let places = met.iter().map(|node| surface.places[*node]).collect();
+        let others = (0..surface.nodes.len()).filter(|other| !met.contains(other));
+        let nodes: Vec<usize> = met.iter().copied().chain(others).map(|node| surface.nodes[node]).collect();
+        let itself = Some(OwnSurface::new(&surface, &at_node, &nodes));
+        Self { nodes, faces, places, opposite: surface, itself, start: (0.0, 0.0) }.started()
+    }
+
+    /// With gap and position without displacements.
+    fn started(mut self) -> Self {
+        let (gap, place, _) = self.values(&|_| 0.0);
+        self.start = (gap, place);
+        self
     }
 
     /// The gap without displacements.
@@ -73,74 +112,115 @@ impl MortarNode {
         self.start.0
     }
 
-    /// The present position of a node by its index into `nodes`.
+    /// The index among the contact's nodes of a node of the opposite surface.
+    fn local(&self, node: usize) -> usize {
+        self.itself.as_ref().map_or(self.places.len() + node, |itself| itself.local(node))
+    }
+
+    /// The present position of one of the own nodes.
     fn position(&self, displacement: LocalDisplacements<'_>, node: usize) -> PlaneVector {
-        let own = self.places.len();
-        let place = if node < own { self.places[node] } else { self.opposite.places[node - own] };
+        let place = self.places[node];
         [place[0] + displacement(2 * node), place[1] + displacement(2 * node + 1)]
     }
 
-    /// The chain of the opposite surface that is nearest to the node.
-    fn chain(&self, displacement: LocalDisplacements<'_>) -> usize {
-        if self.opposite.chains.len() == 1 {
-            return 0;
+    /// The present positions of the ends of an opposite face.
+    fn ends(&self, displacement: LocalDisplacements<'_>, face: &SurfaceFace) -> [PlaneVector; 2] {
+        face.nodes.map(|node| {
+            let (place, local) = (self.opposite.places[node], self.local(node));
+            [place[0] + displacement(2 * local), place[1] + displacement(2 * local + 1)]
+        })
+    }
+
+    /// The part of the opposite surface that the node may be in front of: the chain that is nearest to it, or the layer.
+    fn in_front(&self, displacement: LocalDisplacements<'_>) -> Range<usize> {
+        let place = self.position(displacement, 0);
+        if let Some(itself) = &self.itself {
+            let direction = |face: &FaceOfNode| {
+                let [first, last] = face.nodes.map(|node| self.position(displacement, node));
+                let edge = difference(last, first);
+                edge.map(|part| part / product(edge, edge).sqrt())
+            };
+            let along =
+                self.faces.iter().map(direction).fold([0.0; 2], |sum, part| [sum[0] + part[0], sum[1] + part[1]]);
+            return itself.layer(&self.opposite, place, along, |face| self.ends(displacement, face));
         }
-        let (own, place) = (self.places.len(), self.position(displacement, 0));
-        let distance = |face: &SurfaceFace| {
-            distance_from_segment(place, face.nodes.map(|node| self.position(displacement, own + node)))
+        let chain = if self.opposite.chains.len() == 1 {
+            0
+        } else {
+            let distance = |face: &SurfaceFace| distance_from_segment(place, self.ends(displacement, face));
+            let nearest = self.opposite.faces.iter().map(|face| (distance(face), face.chain));
+            nearest.fold((f64::INFINITY, 0), |best, other| if other.0 < best.0 { other } else { best }).1
         };
-        let nearest = self.opposite.faces.iter().map(|face| (distance(face), face.chain));
-        nearest.fold((f64::INFINITY, 0), |best, other| if other.0 < best.0 { other } else { best }).1
+        let chain = self.opposite.chains[chain];
+        chain.first..chain.first + chain.count
+    }
+
+    /// Whether a face at the node looks at an opposite face.
+    fn looks_at(&self, own: usize, face: usize) -> bool {
+        self.itself.as_ref().is_none_or(|itself| itself.looks_at(own, face))
     }
 
     /// The faces with what is opposite; none where no part of any is covered.
     fn covered(&self, displacement: LocalDisplacements<'_>) -> SmallVec<[CoveredFace; 2]> {
-        let own = self.places.len();
-        let chain = self.chain(displacement);
+        let in_front = self.in_front(displacement);
         let mut reference: Option<f64> = None;
         let mut is_covered = false;
         let mut all = SmallVec::new();
-        for nodes in &self.faces {
-            let [first, last] = nodes.map(|node| self.position(displacement, node));
+        for (which, own) in self.faces.iter().enumerate() {
+            let [first, last] = own.nodes.map(|node| self.position(displacement, node));
             let vector = difference(last, first);
             let length = product(vector, vector).sqrt();
             let along = vector.map(|part| part / length);
             let normal = turned_left(along);
             let mut pieces: SmallVec<[CoveringPiece; 4]> = SmallVec::new();
             let (mut area, mut centre) = (0.0, 0.0);
-            for face in self.opposite.faces.iter().filter(|face| face.chain == chain) {
-                let ends = face.nodes.map(|node| difference(self.position(displacement, own + node), first));
+            for index in in_front.clone().filter(|index| self.looks_at(which, *index)) {
+                let face = &self.opposite.faces[index];
+                let ends = self.ends(displacement, face).map(|end| difference(end, first));
                 let [s_first, s_last] = ends.map(|end| product(along, end));
-                // Faces that look the other way run the other way; those far behind belong to the far side of a body.
                 let [h_first, h_last] = ends.map(|end| product(normal, end));
-                if s_last >= s_first || h_first.max(h_last) < -DEEPEST * length {
+                if !is_in_front([s_first, s_last], [h_first, h_last], length) {
                     continue;
                 }
                 is_covered |= s_first.min(length) - s_last.max(0.0) > LEAST_COVERED * length;
-                let high = if face.ends[0] { length } else { s_first.min(length) };
-                let low = if face.ends[1] { 0.0 } else { s_last.max(0.0) };
+                let goes_on = self.goes_on(index);
+                let high = if goes_on[0] { length } else { s_first.min(length) };
+                let low = if goes_on[1] { 0.0 } else { s_last.max(0.0) };
                 let width = high - low;
                 if width <= LEAST_COVERED * length {
                     continue;
                 }
                 // Around a closed surface coordinates jump; all are counted from the first.
                 let from = *reference.get_or_insert(face.along[0]);
-                let shift = from + self.opposite.way(chain, from, face.along[0]) - face.along[0];
+                let shift = from + self.opposite.way(face.chain, from, face.along[0]) - face.along[0];
                 area += width;
                 centre += width * 0.5 * (high + low);
                 pieces.push(CoveringPiece {
-                    nodes: face.nodes.map(|node| own + node),
+                    nodes: face.nodes.map(|node| self.local(node)),
                     values: [length, s_first, h_first, s_last, h_last],
                     along: face.along.map(|place| place + shift),
-                    goes_on: face.ends,
+                    goes_on,
                 });
             }
             if !pieces.is_empty() {
-                let at = FaceAtNode { is_last: nodes[1] == 0, from: centre / area };
-                all.push(CoveredFace { nodes: *nodes, at, length, along, pieces });
+                let at = FaceAtNode { is_last: own.nodes[1] == 0, from: centre / area, is_alone: own.is_alone };
+                all.push(CoveredFace { nodes: own.nodes, at, length, along, pieces });
             }
         }
         if is_covered { all } else { SmallVec::new() }
+    }
+
+    /// Whether an opposite face goes on straight beyond its first and its last node: where its chain ends, or where the two
+    /// sides of a surface that touches itself change parts.
+    fn goes_on(&self, face: usize) -> [bool; 2] {
+        let SurfaceFace { ends, chain, .. } = self.opposite.faces[face];
+        [ends[0] || (self.itself.is_some() && face == self.opposite.chains[chain].first), ends[1]]
+    }
+
+    /// The opposite faces that the node may touch.
+    fn touchable(&self) -> impl Iterator<Item = &SurfaceFace> {
+        let is_touchable = |face: usize| self.itself.as_ref().is_none_or(|itself| itself.is_touchable(face));
+        self.opposite.faces.iter().enumerate().filter(move |(index, _)| is_touchable(*index)).map(|(_, face)| face)
     }
 
     /// Gap, position along the opposite surface and stretch. Where nothing is opposite, the gap is the distance of the node
@@ -158,25 +238,34 @@ impl MortarNode {
 
     /// The distance of the node from the opposite surface.
     fn distance_of_node(&self, displacement: LocalDisplacements<'_>) -> f64 {
-        let (own, place) = (self.places.len(), self.position(displacement, 0));
-        let ends = |face: &SurfaceFace| face.nodes.map(|node| self.position(displacement, own + node));
-        let distances = self.opposite.faces.iter().map(|face| distance_from_segment(place, ends(face)));
-        distances.fold(f64::INFINITY, f64::min)
+        let place = self.position(displacement, 0);
+        let distances = self.touchable().map(|face| distance_from_segment(place, self.ends(displacement, face)));
+        distances.fold(self.farthest(), f64::min)
+    }
+
+    /// More than any distance that matters; finite at a node of a surface that touches itself, which may look at nothing.
+    fn farthest(&self) -> f64 {
+        if self.itself.is_some() { self.opposite.length() } else { f64::INFINITY }
     }
 
     /// The distance of the node's faces from the opposite surface.
     fn distance(&self, displacement: LocalDisplacements<'_>) -> f64 {
-        let own = self.places.len();
-        let faces = self.faces.iter().map(|nodes| nodes.map(|node| self.position(displacement, node)));
-        let opposite: Vec<[PlaneVector; 2]> = self
-            .opposite
-            .faces
-            .iter()
-            .map(|face| face.nodes.map(|node| self.position(displacement, own + node)))
-            .collect();
-        let between = |face: [PlaneVector; 2]| opposite.iter().map(move |other| distance_of_segments(face, *other));
-        faces.flat_map(between).fold(f64::INFINITY, f64::min)
+        let opposite: Vec<[PlaneVector; 2]> =
+            self.opposite.faces.iter().map(|face| self.ends(displacement, face)).collect();
+        let of_face = |(which, own): (usize, &FaceOfNode)| {
+            let face = own.nodes.map(|node| self.position(displacement, node));
+            let seen = opposite.iter().enumerate().filter(|(other, _)| self.looks_at(which, *other));
+            seen.map(|(_, other)| distance_of_segments(face, *other)).fold(f64::INFINITY, f64::min)
+        };
+        self.faces.iter().enumerate().map(of_face).fold(self.farthest(), f64::min)
     }
+}
+
+/// Whether a face is in front of one of a length, in whose frame its ends are: it runs the other way, and belongs neither to
+/// another side of a corner nor to the far side of a body.
+fn is_in_front([s_first, s_last]: [f64; 2], [h_first, h_last]: [f64; 2], length: f64) -> bool {
+    let advance = s_first - s_last;
+    advance > 0.0 && (h_first - h_last).abs() <= STEEPEST * advance && h_first.max(h_last) >= -DEEPEST * length
 }
 
 impl CoupledKinematics for MortarNode {
@@ -188,6 +277,10 @@ impl CoupledKinematics for MortarNode {
         self.places.len()
     }
 
+    fn touched_nodes(&self) -> &[usize] {
+        &self.opposite.nodes
+    }
+
     fn place(&self, displacement: LocalDisplacements<'_>) -> Vector {
         let (gap, place, _) = self.values(displacement);
         [place - self.start.1, gap - self.start.0, 0.0]
@@ -195,7 +288,8 @@ impl CoupledKinematics for MortarNode {
 
     fn motion(&self, from: LocalDisplacements<'_>, to: LocalDisplacements<'_>) -> Vector {
         let ((gap, place, stretch), (last_gap, last_place, last_stretch)) = (self.values(from), self.values(to));
-        let way = self.opposite.way(self.chain(to), place, last_place);
+        let chain = self.opposite.faces.get(self.in_front(to).start).map_or(0, |face| face.chain);
+        let way = self.opposite.way(chain, place, last_place);
         [0.5 * (stretch + last_stretch) * way, last_gap - gap, 0.0]
     }
 
@@ -235,16 +329,16 @@ impl CoupledKinematics for MortarNode {
     }
 
     fn distance_to_end(&self, displacement: LocalDisplacements<'_>) -> f64 {
-        let (own, chain) = (self.places.len(), self.chain(displacement));
+        let in_front = self.in_front(displacement);
         let mut most = f64::NEG_INFINITY;
-        for nodes in &self.faces {
-            let [first, last] = nodes.map(|node| self.position(displacement, node));
+        for (which, own) in self.faces.iter().enumerate() {
+            let [first, last] = own.nodes.map(|node| self.position(displacement, node));
             let vector = difference(last, first);
             let length = product(vector, vector).sqrt();
-            for face in self.opposite.faces.iter().filter(|face| face.chain == chain) {
-                let ends = face.nodes.map(|node| difference(self.position(displacement, own + node), first));
+            for index in in_front.clone().filter(|index| self.looks_at(which, *index)) {
+                let ends = self.ends(displacement, &self.opposite.faces[index]).map(|end| difference(end, first));
                 let [s_first, s_last] = ends.map(|end| product(vector, end) / length);
-                if s_last < s_first {
+                if is_in_front([s_first, s_last], ends.map(|end| product(turned_left(vector), end) / length), length) {
                     most = most.max(s_first.min(length) - s_last.max(0.0) - LAST_COVERED * length);
                 }
             }

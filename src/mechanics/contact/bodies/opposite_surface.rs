@@ -120,6 +120,11 @@ impl OppositeSurface {
         Ok(surface)
     }
 
+    /// The undeformed length of all faces.
+    pub fn length(&self) -> f64 {
+        self.faces.iter().map(|face| face.along[1] - face.along[0]).sum()
+    }
+
     /// The difference of two coordinates of one chain, the shorter way round a closed one.
     pub fn way(&self, chain: usize, from: f64, to: f64) -> f64 {
         match self.chains[chain].period {

@@ -28,6 +28,14 @@ fn at_an_edge(shift: f64) -> MortarNode {
     MortarNode::new(1, [Some(0), Some(2)], Arc::new(surface), place)
 }
 
+/// A node of the surface through all places in order, which folds upon itself. A closed one ends with the face from 0 to 1.
+fn in_itself(node: usize, is_closed: bool) -> MortarNode {
+    let faces: Vec<[usize; 2]> = (0..7 + usize::from(is_closed)).map(|k| [k, (k + 1) % 8]).collect();
+    let surface = OppositeSurface::new(&faces, |node| PLACES[node]).expect("a surface");
+    let at = surface.nodes.iter().position(|one| *one == node).expect("a node");
+    MortarNode::in_itself(at, Arc::new(surface))
+}
+
 fn all() -> Vec<(&'static str, Arc<dyn CoupledKinematics>)> {
     let end = Arc::new(OppositeSurface::new(&OPPOSITE[..1], |node| PLACES[node]).expect("a surface"));
     vec![
@@ -35,6 +43,8 @@ fn all() -> Vec<(&'static str, Arc<dyn CoupledKinematics>)> {
         ("mortar at the end of its surface", Arc::new(MortarNode::new(2, [Some(1), None], opposite(), |n| PLACES[n]))),
         ("mortar, both faces covered in part", Arc::new(at_an_edge(0.5))),
         ("mortar, a face covered in part", Arc::new(at_an_edge(-0.2))),
+        ("mortar of a surface that touches itself", Arc::new(in_itself(5, false))),
+        ("mortar at the end of a closed surface that touches itself", Arc::new(in_itself(0, true))),
         ("node to surface", Arc::new(NodeToSurface::new(1, PLACES[1], opposite()))),
         ("node to surface near an end", Arc::new(NodeToSurface::new(0, PLACES[0], opposite()))),
         ("node before a single face", Arc::new(NodeToSurface::new(1, PLACES[1], end))),
@@ -207,4 +217,51 @@ fn a_closed_surface_has_no_seam() {
 fn a_surface_that_branches_is_refused() {
     let error = OppositeSurface::new(&[[0, 1], [2, 1]], |node| PLACES[node]);
     assert_eq!(error, Err(SurfaceError::Branches(1)));
+}
+
+/// Of the two sides of a fold the later one carries the multipliers, and the gaps are those of two surfaces.
+#[test]
+fn a_fold_touches_as_two_surfaces_do() {
+    let later = OppositeSurface::new(&OPPOSITE, |node| PLACES[node]).expect("a surface");
+    let earlier = Arc::new(OppositeSurface::new(&[[0, 1], [1, 2]], |node| PLACES[node]).expect("a surface"));
+    for (node, beside) in [(4, [3, 5]), (5, [4, 6]), (6, [5, 7])] {
+        assert!(later.nodes.contains(&node));
+        let pair = MortarNode::new(node, beside.map(Some), Arc::clone(&earlier), |node| PLACES[node]);
+        let fold = in_itself(node, false);
+        // The end of the earlier side goes on straight where there is no fold.
+        let is_inner = node != 4;
+        let is_same = (pair.initial_gap() - fold.initial_gap()).abs() < 1e-15;
+        assert!(is_same == is_inner, "{node}: {} {}", pair.initial_gap(), fold.initial_gap());
+    }
+    // The first node looks at nothing.
+    let mut columns = 0;
+    in_itself(0, false).each_column(&|_| 0.0, &mut |_, _| columns += 1);
+    assert_eq!(columns, 0);
+}
+
+/// A node of a thin wall whose surface goes around it does not touch the other side of the wall.
+#[test]
+fn the_sides_of_a_wall_do_not_touch() {
+    let count = 10;
+    // There along the lower side, back along the upper one, a tenth of a face apart.
+    let place = |node: usize| {
+        if node <= count { [node as f64, 0.0] } else { [(2 * count + 1 - node) as f64, 0.1] }
+    };
+    let all = 2 * count + 2;
+    let faces: Vec<[usize; 2]> = (0..all).map(|k| [(k + 1) % all, k]).collect();
+    let surface = Arc::new(OppositeSurface::new(&faces, place).expect("a surface"));
+    for at in 0..all {
+        let node = MortarNode::in_itself(at, Arc::clone(&surface));
+        let mut columns = 0;
+        // The wall bends, which moves its sides along each other.
+        let bent = |freedom: usize| {
+            let [x, y] = place(node.nodes()[freedom / 2]);
+            let (radius, angle) = (5.0, x / 5.0);
+            let moved = [(radius - y) * angle.sin(), radius - (radius - y) * angle.cos()];
+            moved[freedom % 2] - [x, y][freedom % 2]
+        };
+        node.each_column(&bent, &mut |_, _| columns += 1);
+        assert_eq!(columns, 0, "{at}");
+        assert!(node.initial_gap() > 0.0, "{at}");
+    }
 }

@@ -8,6 +8,10 @@ pub(super) const LEAST_COVERED: f64 = 1e-8;
 /// the far side of a body.
 pub(super) const DEEPEST: f64 = 0.5;
 
+/// A face of the opposite surface whose distance changes by more than this per length of the own face is not in front of it:
+/// it belongs to another side of a corner.
+pub(super) const STEEPEST: f64 = 4.0;
+
 /// The part of a face that is still covered where a node counts as at the end of the surface that it touches: above
 /// [`LEAST_COVERED`], so that the end is found before the contact is lost.
 pub(super) const LAST_COVERED: f64 = 1e-6;
@@ -26,3 +30,10 @@ pub(super) const CLOSEST_POINT_ITERATIONS: usize = 60;
 
 /// Positions on each piece of a smoothed surface at which the closest point may be sought first.
 pub(super) const SAMPLES: usize = 4;
+
+/// How far beside a face, in its own length and the thickness of the wall, the other side of a wall does not touch it: a
+/// wall that bends moves its sides along each other by less.
+pub(super) const BEHIND_A_WALL: f64 = 3.0;
+
+/// Faces of one surface that cross at the start by less than this part of the shorter one are those of meshes that touch.
+pub(super) const CROSSING: f64 = 0.05;

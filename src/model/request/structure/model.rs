@@ -50,6 +50,9 @@ pub struct Model {
     /// Which nodes may touch which obstacles.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contacts: Vec<Contact>,
+    /// For each of `contacts` its index in the request as posted; empty where none stood for several.
+    #[serde(skip)]
+    pub(crate) posted_contacts: Vec<usize>,
     /// Run in order; each starts at load factor 0 and holds what earlier ones reached.
     #[cfg_attr(feature = "server", schema(min_items = 1))]
     pub stages: Vec<Stage>,
@@ -69,6 +72,11 @@ pub struct Units {
 }
 
 impl Model {
+    /// The index of a contact in the request as posted, where one contact may stand for those of many nodes.
+    pub(crate) fn posted_contact(&self, index: usize) -> usize {
+        self.posted_contacts.get(index).copied().unwrap_or(index)
+    }
+
     /// Number of rotations of a node that has any: 1 in the plane, 3 in space.
     pub fn rotations(&self) -> usize {
         if self.dimension == 3 { 3 } else { 1 }
@@ -118,6 +126,7 @@ impl Model {
             sets: IndexMap::new(),
             obstacles: IndexMap::new(),
             contacts: Vec::new(),
+            posted_contacts: Vec::new(),
             stages: Vec::new(),
         }
     }

@@ -114,7 +114,7 @@ impl Side {
     }
 }
 
-/// A node, or the nodes of a surface, against an obstacle or the surface of another body.
+/// A node, or the nodes of a surface, against an obstacle, the surface of another body, or the same surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
@@ -128,7 +128,8 @@ pub struct Contact {
     /// Name of the obstacle. Absent where `against` is given.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub obstacle: String,
-    /// Name of the surface of another body, in place of `obstacle`.
+    /// Name of the surface of another body, in place of `obstacle`; in the plane also that of `surface`, which may then
+    /// touch itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub against: Option<String>,
     /// How a contact of bodies is discretised; `mortar` when absent.
@@ -175,6 +176,11 @@ impl Contact {
     /// Whether the contact stands for those of all nodes of its surface.
     pub fn names_whole_surface(&self) -> bool {
         self.surface.is_some() && self.node.is_empty()
+    }
+
+    /// Whether the surface of the contact touches itself.
+    pub fn touches_itself(&self) -> bool {
+        self.surface.is_some() && self.surface == self.against
     }
 
     /// The name of what is touched: the obstacle or the other surface.

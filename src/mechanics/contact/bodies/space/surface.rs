@@ -165,7 +165,7 @@ impl SurfaceInSpace {
         face.nodes.iter().map(moved).collect()
     }
 
-    /// Whether a point is on the free side of the undeformed surface.
+    /// Whether a point is on the free side of the undeformed surface, or beyond an end of it.
     pub fn is_free(&self, point: Vector) -> bool {
         // At an edge several triangles are nearest; the one that the point is more across decides.
         let mut best = (f64::INFINITY, 0.0);
@@ -174,7 +174,11 @@ impl SurfaceInSpace {
             for triangle in face.triangles(&places, 0) {
                 let corners = triangle.points.map(|point| point.place);
                 let normal = cross(&add(&corners[1], -1.0, &corners[0]), &add(&corners[2], -1.0, &corners[0]));
-                let across = dot(&normal, &add(&point, -1.0, &corners[0])) / size(&normal);
+                let across = if is_beyond(&point, &corners, triangle.ends) {
+                    f64::INFINITY
+                } else {
+                    dot(&normal, &add(&point, -1.0, &corners[0])) / size(&normal)
+                };
                 let distance = distance_from_triangle(&point, &corners);
                 let is_as_near = (distance - best.0).abs() <= SAME_DISTANCE * distance;
                 if (is_as_near && across.abs() > f64::abs(best.1)) || (!is_as_near && distance < best.0) {
@@ -192,6 +196,16 @@ fn distance_from_segment(point: &Vector, [first, last]: [&Vector; 2]) -> f64 {
     let square = dot(&along, &along);
     let share = if square > 0.0 { (dot(&along, &from) / square).clamp(0.0, 1.0) } else { 0.0 };
     size(&add(&from, -share, &along))
+}
+
+/// Whether a point is beyond an edge of a triangle at which the surface ends.
+fn is_beyond(point: &Vector, corners: &[Vector; 3], ends: [bool; 3]) -> bool {
+    let normal = cross(&add(&corners[1], -1.0, &corners[0]), &add(&corners[2], -1.0, &corners[0]));
+    (0..3).filter(|k| ends[*k]).any(|k| {
+        let edge = add(&corners[(k + 1) % 3], -1.0, &corners[k]);
+        let inward = cross(&normal, &edge);
+        dot(&inward, &add(point, -1.0, &corners[k])) < -SAME_DISTANCE * size(&inward) * size(&edge)
+    })
 }
 
 /// The distance of a point from a triangle.
