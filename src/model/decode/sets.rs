@@ -200,12 +200,11 @@ impl<'a> Groups<'a> {
             return Members::Mistaken;
         }
         if nodes.is_empty() {
-            mistakes.add(at, || match group.strip_prefix('@').filter(|name| self.surfaces.contains_key(*name)) {
-                Some(surface) => format!("the surface {} has no faces; one or more are expected", quoted(surface)),
-                None => format!(
-                    "the set {} has no nodes: it lists none, and no element of the model by name",
-                    quoted(group)
-                ),
+            mistakes.add(at, || {
+                if self.surfaces.contains_key(group) {
+                    return format!("the surface {} has no faces; one or more are expected", quoted(group));
+                }
+                format!("the set {} has no nodes: it lists none, and no element of the model by name", quoted(group))
             });
             return Members::Mistaken;
         }

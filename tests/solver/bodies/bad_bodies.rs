@@ -55,6 +55,7 @@ fn what_makes_no_contact_of_bodies_is_refused_with_its_place() {
         &format!("{contact}/discretisation"),
         &["itself", "mortar"],
     );
+    refused(|model| model["surfaces"]["above"]["faces"] = json!([]), &format!("{contact}/surface"), &["no faces"]);
     // A contact of all nodes of a surface before it does not shift the place of another.
     let another = json!({"surface": "above", "against": "belov", "friction": 0.1});
     refused(
