@@ -64,6 +64,8 @@ pub(crate) struct Mistakes {
     listed: Vec<InputError>,
     kinds: HashMap<MistakeKind, Repeats>,
     unlisted: usize,
+    /// How often a listed one was found again.
+    found_again: usize,
 }
 
 /// What mistakes share that repeat one another: what is wrong, but for names and numbers, how deep in the document, and at
@@ -82,6 +84,7 @@ impl Mistakes {
         let error = InputError::new(at.pointer(), detail());
         // A contact that stands for many has the same mistake many times.
         if self.listed.contains(&error) {
+            self.found_again += 1;
             return;
         }
         let kind = kind_of(&error);
@@ -99,7 +102,7 @@ impl Mistakes {
     }
 
     pub fn count(&self) -> usize {
-        self.kinds.values().map(|repeats| repeats.count).sum::<usize>() + self.unlisted
+        self.kinds.values().map(|repeats| repeats.count).sum::<usize>() + self.unlisted + self.found_again
     }
 
     /// The mistakes as an error, if there are any.

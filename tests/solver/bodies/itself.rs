@@ -1,10 +1,9 @@
 //! Bodies whose skin is one surface that may touch itself: a ring with a slit.
 
-use super::{Sheet, support};
-use crate::common::paths::{close, judged, request};
+use super::{Sheet, support, whole_path};
+use crate::common::paths::{close, request};
 use arcslip::JobRequest;
-use arcslip::result::increment::{Increment, Status};
-use arcslip::result::stop_reason::StopReason;
+use arcslip::result::increment::Status;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 
@@ -60,20 +59,11 @@ fn slit_ring(slit: f64, friction: f64, turned: f64, touching: &Touching) -> JobR
     request(&json!({"model": model, "analysis": {"arc_length": {"initial": 0.05}}}).to_string())
 }
 
-fn path(request: &JobRequest) -> Vec<Increment> {
-    let traced = judged(request);
-    assert_eq!(traced.report.stop_reason, StopReason::StagesCompleted);
-    for (increment, errors) in traced.increments.iter().zip(&traced.errors) {
-        assert!(errors.largest_of_state() < 1e-9 && errors.energy < 1e-6, "increment {}: {errors:?}", increment.index);
-    }
-    traced.increments
-}
-
 #[test]
 fn the_ends_of_a_slit_ring_touch() {
     for (friction, turned) in [(0.0, 1.1), (0.4, 1.1)] {
-        let two = path(&slit_ring(0.2, friction, 0.0, &Touching::TwoSurfaces));
-        let one = path(&slit_ring(0.2, friction, turned, &Touching::Itself(17)));
+        let two = whole_path(&slit_ring(0.2, friction, 0.0, &Touching::TwoSurfaces));
+        let one = whole_path(&slit_ring(0.2, friction, turned, &Touching::Itself(17)));
         assert_eq!(one.len(), two.len());
         let (last, end) = (two.last().expect("an end"), one.last().expect("an end"));
         for (node, expected) in last.displacements.iter() {

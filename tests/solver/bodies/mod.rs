@@ -10,6 +10,10 @@ mod random_pairs;
 mod spheres;
 mod tube;
 
+use crate::common::paths::judged;
+use arcslip::JobRequest;
+use arcslip::result::increment::Increment;
+use arcslip::result::stop_reason::StopReason;
 use serde_json::{Map, Value, json};
 
 /// A mapped mesh of quadrilaterals, its parts named with a prefix.
@@ -98,4 +102,14 @@ pub fn moved(nodes: &[String], motion: [f64; 2]) -> Value {
 /// Prescribed displacements of nodes in space.
 pub fn moved_in_space(nodes: &[String], motion: [f64; 3]) -> Value {
     nodes.iter().map(|node| (node.clone(), json!(motion))).collect::<Map<_, _>>().into()
+}
+
+/// The increments of a path to the end of its last stage, all within the measure.
+pub fn whole_path(request: &JobRequest) -> Vec<Increment> {
+    let traced = judged(request);
+    assert_eq!(traced.report.stop_reason, StopReason::StagesCompleted);
+    for (increment, errors) in traced.increments.iter().zip(&traced.errors) {
+        assert!(errors.largest_of_state() < 1e-9 && errors.energy < 1e-6, "increment {}: {errors:?}", increment.index);
+    }
+    traced.increments
 }

@@ -5,10 +5,10 @@
 //! ring with EI = 1 and radius 1 the sides meet at the pressure 5.247 and along a line from 10.34 on; it buckles at 3
 //! (M. Lévy, 1884).
 
-use crate::common::paths::{close, judged, request};
+use super::whole_path;
+use crate::common::paths::{close, request};
 use arcslip::model::JobRequest;
 use arcslip::result::increment::{Increment, PointKind, Status};
-use arcslip::result::stop_reason::StopReason;
 use serde_json::{Map, Value, json};
 use std::f64::consts::TAU;
 
@@ -55,15 +55,6 @@ fn tube_in_itself(count: usize, friction: f64, until: f64, seam: usize) -> JobRe
     request(&posted.to_string())
 }
 
-fn path(request: &JobRequest) -> Vec<Increment> {
-    let traced = judged(request);
-    assert_eq!(traced.report.stop_reason, StopReason::StagesCompleted);
-    for (increment, errors) in traced.increments.iter().zip(&traced.errors) {
-        assert!(errors.largest_of_state() < 1e-9 && errors.energy < 1e-6, "increment {}: {errors:?}", increment.index);
-    }
-    traced.increments
-}
-
 /// The limit of results whose errors fall with a power of the length of elements, each half as long as before.
 fn extrapolated(coarse: f64, fine: f64, order: i32) -> f64 {
     fine + (fine - coarse) / (2.0_f64.powi(order) - 1.0)
@@ -72,7 +63,7 @@ fn extrapolated(coarse: f64, fine: f64, order: i32) -> f64 {
 #[test]
 fn a_tube_under_pressure_buckles() {
     let [coarse, fine] = [40, 80].map(|count| {
-        let increments = path(&tube(count, 0.0, 0.0, 3.5));
+        let increments = whole_path(&tube(count, 0.0, 0.0, 3.5));
         let found = increments.iter().find(|increment| increment.point.kind == PointKind::SmoothBifurcation);
         found.expect("a bifurcation").load_factor
     });
@@ -86,7 +77,7 @@ fn a_free_tube_buckles_in_two_ways_at_once() {
     let mut request = tube(32, 0.0, 0.0, 3.3);
     request.model.contacts.clear();
     request.model.supports = serde_json::from_value(json!({"n0": ["x", "y"], "n16": ["y"]})).expect("supports");
-    let increments = path(&request);
+    let increments = whole_path(&request);
     let is_one = |increment: &&Increment| increment.point.kind == PointKind::SmoothBifurcation;
     let found: Vec<&Increment> = increments.iter().filter(is_one).collect();
     let [found] = found[..] else { panic!("{} bifurcations", found.len()) };
@@ -97,7 +88,7 @@ fn a_free_tube_buckles_in_two_ways_at_once() {
 #[test]
 fn the_opposite_sides_of_a_tube_meet() {
     let meetings = [(32, 12.5), (64, 11.5), (128, 11.0)].map(|(count, until)| {
-        let increments = path(&tube(count, 1e-5, 0.3, until));
+        let increments = whole_path(&tube(count, 1e-5, 0.3, until));
         let touching =
             |increment: &Increment| increment.contacts.iter().filter(|contact| contact.status != Status::Free).count();
         let changes: Vec<f64> = increments
@@ -126,7 +117,7 @@ fn a_tube_touches_itself() {
     let sides = |surface: &str, against: &str| {
         let mut two = posted(count, 1e-5, 0.3, until);
         two["model"]["contacts"] = json!([{"surface": surface, "against": against, "friction": 0.3}]);
-        path(&request(&two.to_string()))
+        whole_path(&request(&two.to_string()))
     };
     let meeting = |increments: &[Increment]| {
         let met = increments.iter().find(|increment| increment.point.kind == PointKind::ContactChange);
@@ -135,7 +126,7 @@ fn a_tube_touches_itself() {
     let top = |increments: &[Increment]| increments.last().expect("an end").displacements["n8"].to_vec();
     let [lower, upper] = [sides("lower", "upper"), sides("upper", "lower")];
     for (seam, two) in [(30, &lower), (7, &upper)] {
-        let one = path(&tube_in_itself(count, 0.3, until, seam));
+        let one = whole_path(&tube_in_itself(count, 0.3, until, seam));
         println!("{seam}: {} {}, {:?} {:?}", meeting(&one), meeting(two), top(&one), top(two));
         close(meeting(&one), meeting(two), 1e-9, "pressure at which the sides meet");
         (0..2).for_each(|k| close(top(&one)[k], top(two)[k], 1e-9, "place of the top at the end"));

@@ -5,6 +5,8 @@ use crate::check::measure::numbers::MeasuredVector;
 
 /// How far beside a face, in its length and the thickness of the wall, the other side of a wall is left out.
 const BESIDE: f64 = 3.0;
+/// The thickness of a wall over the length of a face below which its sides are those of a closed slit.
+const THINNEST: f64 = 0.05;
 
 /// A face at a node.
 #[derive(Debug, Clone)]
@@ -61,7 +63,7 @@ fn may_touch(face: &OppositeFace, other: &OppositeFace, places: &[MeasuredVector
     let [from, to] = other.nodes.map(|node| (places[node] - start).dot(&along));
     let heights = other.nodes.map(|node| (places[node] - start).dot(&left));
     let beside = BESIDE * (length - heights[0].min(heights[1]));
-    let is_behind = heights[0] < 0.0 && heights[1] < 0.0;
+    let is_behind = heights.iter().all(|height| *height < -THINNEST * length);
     let is_side = is_behind && to < from && from > -beside && to < length + beside;
     !is_side
 }

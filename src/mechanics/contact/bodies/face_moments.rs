@@ -71,20 +71,20 @@ pub(super) struct FaceAtNode {
 /// The values at a node: means over its faces, weighted by dual functions, which are linear on each face and orthogonal to
 /// the shape functions of its other nodes over the covered part (B. I. Wohlmuth, A mortar finite element method using dual
 /// spaces for the Lagrange multiplier, SIAM J. Numer. Anal. 38, 2000). The mean of `h` is the value at the node of the line
-/// that fits `h` best; the weight of a face is the integral of the node's shape function. On a face on which it is alone with a multiplier the
-/// node has the mean.
+/// that fits `h` best; the weight of a face is the integral of the node's shape function. On a face
+/// on which it is alone with a multiplier the node has the mean.
 pub(super) fn nodal_values<D: Differential>(faces: &[(FaceAtNode, [D; OF_FACE])]) -> MeanAtNode<D> {
     let mut sums = [D::constant(0.0); 5];
     for (at, [area, first, second, heights, heights_first, places, places_first, undeformed, length]) in faces {
-        let inverse = area.reciprocal();
-        let centre = *first * inverse;
-        let spread = *second * inverse - centre * centre;
-        // The node's position and shape function, from where s is counted.
         if at.is_alone {
             let parts = [*area, *heights, *places, *area, *undeformed];
             sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum = *sum + part);
             continue;
         }
+        let inverse = area.reciprocal();
+        let centre = *first * inverse;
+        let spread = *second * inverse - centre * centre;
+        // The node's position and shape function, from where s is counted.
         let own = if at.is_last { *length } else { D::constant(0.0) }.plus(-at.from);
         let last_share = (area.times(at.from) + *first) * length.reciprocal();
         let weight = if at.is_last { last_share } else { *area - last_share };

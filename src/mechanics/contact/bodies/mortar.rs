@@ -95,8 +95,9 @@ impl MortarNode {
             .collect();
         let places = met.iter().map(|node| surface.places[*node]).collect();
         let others = (0..surface.nodes.len()).filter(|other| !met.contains(other));
-        let nodes: Vec<usize> = met.iter().copied().chain(others).map(|node| surface.nodes[node]).collect();
-        let itself = Some(OwnSurface::new(&surface, &at_node, &nodes));
+        let order: Vec<usize> = met.iter().copied().chain(others).collect();
+        let itself = Some(OwnSurface::new(&surface, &at_node, &order));
+        let nodes = order.iter().map(|node| surface.nodes[*node]).collect();
         Self { nodes, faces, places, opposite: surface, itself, start: (0.0, 0.0) }.started()
     }
 

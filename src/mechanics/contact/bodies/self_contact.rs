@@ -1,8 +1,16 @@
 //! A surface that touches itself, in the plane: which of its faces a face may touch.
 //!
-//! Each pair of faces is looked at once, from the later one along its chain: two multipliers for one pair would not be
-//! determined. Faces that share a node do not touch each other, nor do the two sides of a wall. Where the way from side to
-//! side is folded more than once (a roll), the nearest layer counts.
+//! Faces are numbered along the surface. A face `e` looks at
+//!
+//! ```text
+//! { f < e : f has no node of e, and f is not the other side of a wall at e },
+//! ```
+//!
+//! so that each pair of faces is looked at once, from the later one: two multipliers for one pair would not be determined.
+//! The gap at a node is then that of [`mortar`](super::mortar) over what its faces look at; in a roll the nearest layer
+//! counts. That single pass over a surface that touches itself is B. Yang and T. A. Laursen's (A large deformation mortar
+//! formulation of self contact with finite sliding, Comput. Meth. Appl. Mech. Engng 197, 2008); here the order of the faces
+//! says which of two carries the multipliers.
 
 use crate::mechanics::contact::bodies::opposite_surface::{OppositeSurface, SurfaceFace, distance_from_segment};
 use crate::mechanics::contact::bodies::tolerances::{BEHIND_A_WALL, CROSSING};
@@ -43,12 +51,13 @@ pub(super) fn faces_of_node(surface: &OppositeSurface, node: usize) -> SmallVec<
 }
 
 impl OwnSurface {
-    /// `faces`: those at the node; `nodes`: numbers of the contact's nodes.
-    pub(super) fn new(surface: &OppositeSurface, faces: &[FaceOfItself], nodes: &[usize]) -> Self {
+    /// `faces`: those at the node; `order`: the nodes of the surface, as indices into its own, in the order of the contact.
+    pub(super) fn new(surface: &OppositeSurface, faces: &[FaceOfItself], order: &[usize]) -> Self {
         let of_face = |own: usize| (0..surface.faces.len()).map(|other| may_touch(surface, own, other)).collect();
         let touchable = faces.iter().map(|face| of_face(face.index)).collect();
-        let index = |node: &usize| nodes.iter().position(|other| other == node).unwrap_or_default();
-        Self { touchable, local: surface.nodes.iter().map(index).collect() }
+        let mut local = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(place, node)| local[*node] = place);
+        Self { touchable, local }
     }
 
     /// The index among the contact's nodes of a node of the surface.
@@ -103,7 +112,8 @@ fn may_touch(surface: &OppositeSurface, own: usize, other: usize) -> bool {
     let ends = opposite.nodes.map(|node| difference(surface.places[node], from));
     let along = ends.map(|end| product(edge, end) / length);
     let across = ends.map(|end| product(turned_left(edge), end) / length);
-    let is_other_side = along[1] < along[0] && across[0].max(across[1]) < 0.0;
+    // Sides that coincide, or overlap as meshes do, are those of a slit that is closed.
+    let is_other_side = along[1] < along[0] && across[0].max(across[1]) < -CROSSING * length;
     let reach = BEHIND_A_WALL * (length - across[0].min(across[1]));
     !(is_other_side && along[0] > -reach && along[1] < length + reach)
 }

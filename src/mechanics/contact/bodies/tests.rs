@@ -239,6 +239,21 @@ fn a_fold_touches_as_two_surfaces_do() {
     assert_eq!(columns, 0);
 }
 
+/// The sides of a slit that is closed at the start touch, whatever the rounding of their places.
+#[test]
+fn the_sides_of_a_closed_slit_touch() {
+    for rounding in [0.0, 1e-16, -1e-16, 1e-3] {
+        // There along the lower side, free above, and back along the upper one.
+        let place = |node: usize| if node <= 4 { [node as f64, 0.0] } else { [(8 - node) as f64, -rounding] };
+        let faces: Vec<[usize; 2]> = (0..8).map(|k| [k, k + 1]).collect();
+        let surface = Arc::new(OppositeSurface::new(&faces, place).expect("a surface"));
+        let node = MortarNode::in_itself(7, surface);
+        assert!((node.initial_gap() + rounding).abs() <= 1e-15, "{}", node.initial_gap());
+        let row = columns(&node, &vec![0.0; 2 * node.nodes().len()]);
+        assert!((row[1][1] - 1.0).abs() <= 1e-2, "{:?}", row[1]);
+    }
+}
+
 /// A node of a thin wall whose surface goes around it does not touch the other side of the wall.
 #[test]
 fn the_sides_of_a_wall_do_not_touch() {

@@ -35,5 +35,6 @@ pub(super) const SAMPLES: usize = 4;
 /// wall that bends moves its sides along each other by less.
 pub(super) const BEHIND_A_WALL: f64 = 3.0;
 
-/// Faces of one surface that cross at the start by less than this part of the shorter one are those of meshes that touch.
+/// Faces of one surface that cross at the start by less than this part of the shorter one, or are behind each other by less
+/// than this part of a face, are those of meshes that touch.
 pub(super) const CROSSING: f64 = 0.05;
