@@ -1,13 +1,16 @@
 #!/usr/bin/env bash
 # The Python package: its tests on the oldest and the newest CPython that the machine has, without and with the packages
 # that it can use; its notebooks; its types.
-# Needs Python 3.9 or newer; the rest is installed into the target folder.
+# Needs Python 3.9 or newer; the rest is installed into the target folder. Takes the program at ARCSLIP_PROGRAM, or builds
+# one.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 target=${CARGO_TARGET_DIR:-target}
-cargo build --release --quiet
-ARCSLIP_PROGRAM=$(realpath "$target/release/arcslip")
+if [ -z "${ARCSLIP_PROGRAM:-}" ]; then
+  cargo build --release --quiet
+  ARCSLIP_PROGRAM=$(realpath "$target/release/arcslip")
+fi
 export ARCSLIP_PROGRAM MPLBACKEND=Agg
 
 # Every CPython by its version, of the search path and of pyenv.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The files of results read by the programs they are for: VTK's reader, and pyarrow.
-# Needs Python; both are installed into the target folder.
+# Needs Python; both are installed into the target folder. Takes the program at ARCSLIP_PROGRAM, or builds one.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -12,5 +12,8 @@ if ! [ -x "$tools/bin/python" ]; then
 fi
 # VTK's reader of XML files needs no display, but the libraries of one.
 "$tools/bin/python" -c 'import pyarrow, vtk' 2> /dev/null || "$tools/bin/pip" install -q 'numpy>=2' 'pyarrow>=20' 'vtk>=9.4,<10'
-cargo build --release --quiet
-"$tools/bin/python" tests/result_files.py --program "$(realpath "$target/release/arcslip")" "$@"
+if [ -z "${ARCSLIP_PROGRAM:-}" ]; then
+  cargo build --release --quiet
+  ARCSLIP_PROGRAM=$(realpath "$target/release/arcslip")
+fi
+"$tools/bin/python" tests/result_files.py --program "$ARCSLIP_PROGRAM" "$@"

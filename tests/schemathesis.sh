@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The live server against its own description: every call with what the description allows and with what it does not, twice:
 # as it is on its own machine, and where it asks for tokens. SEED and EXAMPLES can be set.
-# Needs Python; Schemathesis is installed into the target folder.
+# Needs Python; Schemathesis is installed into the target folder. Takes the program at ARCSLIP_PROGRAM, or builds one.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -12,15 +12,17 @@ if ! [ -x "$tools/bin/st" ]; then
     { apt-get update -q && apt-get install -qy python3-venv && python3 -m venv "$tools"; }
   "$tools/bin/pip" install -q 'schemathesis>=4.32,<5'
 fi
-cargo build --release --quiet
-arcslip=$(realpath "$target/release/arcslip")
+if [ -z "${ARCSLIP_PROGRAM:-}" ]; then
+  cargo build --release --quiet
+  ARCSLIP_PROGRAM=$(realpath "$target/release/arcslip")
+fi
 
 work=$(mktemp -d)
 server=
 trap 'kill $server 2> /dev/null || true; rm -rf "$work"' EXIT
 
 serve() {
-  "$arcslip" serve --listen 127.0.0.1:0 --database "$work/$1.db" "${@:2}" > "$work/$1.out" 2> "$work/$1.log" &
+  "$ARCSLIP_PROGRAM" serve --listen 127.0.0.1:0 --database "$work/$1.db" "${@:2}" > "$work/$1.out" 2> "$work/$1.log" &
   server=$!
   for _ in $(seq 1 100); do
     url=$(sed -n 's/.* listens on //p' "$work/$1.out")
@@ -45,7 +47,7 @@ serve open
 ask
 quiet open
 
-token=$("$arcslip" token all --scopes admin 2>&1 > "$work/tokens")
+token=$("$ARCSLIP_PROGRAM" token all --scopes admin 2>&1 > "$work/tokens")
 serve tokens --tokens-file "$work/tokens"
 ask -H "Authorization: Bearer $token"
 quiet tokens

@@ -44,7 +44,7 @@ fn append_boxes(pieces: &[[PlanePoint; 4]], boxes: &mut Vec<PlaneBox>) {
         append_boxes(first, boxes);
         append_boxes(second, boxes);
     }
-    debug_assert!(boxes.len() == place + size_of_tree(pieces.len()));
+    assert!(boxes.len() == place + size_of_tree(pieces.len()));
 }
 
 const NOWHERE: PlaneBox = PlaneBox { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };

@@ -177,13 +177,14 @@ fn pulled(increment: &Increment) -> (f64, f64) {
 /// All nodes slip in the end, along the push once it has outlasted the slips of pressing: on a plane of slope 0.1 the force is
 /// `F/G = (tan α + μ)/(1 - μ tan α) = 0.412371134` (NAFEMS, benchmark CGS-4).
 #[test]
+#[ignore = "half a minute in a release build: cargo test --release --test solver bricks -- --ignored"]
 fn a_brick_slips_as_a_whole_at_the_limit_of_friction() {
     slips_as_a_whole(0.1);
 }
 
 /// On a level plane the force is μ N.
 #[test]
-#[ignore = "minutes"]
+#[ignore = "half a minute in a release build: cargo test --release --test solver bricks -- --ignored"]
 fn a_brick_slips_as_a_whole_on_a_level_plane() {
     slips_as_a_whole(0.0);
 }
@@ -256,6 +257,7 @@ fn random_pair(seed: u64, angle: f64) -> JobRequest {
 
 /// The measure and the energy of random pairs, and the same path in turned axes.
 #[test]
+#[ignore = "half a minute in a release build: cargo test --release --test solver bricks -- --ignored"]
 fn random_pairs_in_space_keep_the_laws() {
     let mut statuses = [0; 3];
     for seed in 0..8 {
