@@ -37,14 +37,12 @@ pub(super) fn boxes(pieces: &[[PlanePoint; 4]]) -> Vec<PlaneBox> {
 }
 
 fn append_boxes(pieces: &[[PlanePoint; 4]], boxes: &mut Vec<PlaneBox>) {
-    let place = boxes.len();
     boxes.push(pieces.iter().map(|piece| PlaneBox::of(piece)).reduce(|a, b| a.joined(&b)).unwrap_or(NOWHERE));
     if pieces.len() > 1 {
         let (first, second) = pieces.split_at(pieces.len() / 2);
         append_boxes(first, boxes);
         append_boxes(second, boxes);
     }
-    assert!(boxes.len() == place + size_of_tree(pieces.len()));
 }
 
 const NOWHERE: PlaneBox = PlaneBox { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
