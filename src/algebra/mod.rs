@@ -1,8 +1,10 @@
 //! Linear algebra: dense factorisations and factorisations of sparse bordered matrices, which report when they are
-//! unreliable; smooth curves in the plane; numbers that carry derivatives. All higher layers may use this module; it uses none of them.
+//! unreliable; fixed points; smooth curves in the plane; numbers that carry derivatives. All higher layers may use this
+//! module; it uses none of them.
 
 pub mod dense;
 pub(crate) mod differential;
+pub(crate) mod fixed_point;
 pub mod plane_curve;
 pub(crate) mod scalar_root;
 pub mod sparse;

@@ -2,10 +2,11 @@
 
 use crate::algebra::SystemFactorisation;
 use crate::mechanics::contact::Mode;
+use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::closing_equation::{ArcLengthEquation, ClosingEquation};
 use crate::mechanics::equations::corrected_point::{Corrected, Failure, Tangent};
+use crate::mechanics::equations::slip_turn_update::{self, SettlingPasses};
 use crate::mechanics::equations::stage_end_criteria::End;
-use crate::mechanics::equations::{ModeSystem, slip_turn_update};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cached_factorisation::CachedFactorisation;
@@ -188,8 +189,9 @@ impl StepStart<'_> {
         if system.has_tracks() {
             // Solve again, now that the turn of the slips at the end is known; where directions settle, until they
             // have.
+            let mut settles = slip_turn_update::set_turns(&mut system, self.rate, &corrected, &tangent);
+            let mut passes = SettlingPasses::default();
             for pass in 1.. {
-                let settles = slip_turn_update::set_turns(&mut system, self.rate, &corrected, &tangent);
                 let again = newton::correct_from(
                     &system,
                     system.iterate_of(&corrected),
@@ -201,20 +203,24 @@ impl StepStart<'_> {
                 .map_err(Refused::Newton)?;
                 // The first solve shows how difficult the increment is.
                 let hardness = corrected.iterations_to_small;
-                let change = slip_turn_update::largest_turn(&system, &again, Some(&corrected));
                 corrected = again;
                 corrected.iterations_to_small = hardness;
                 let factorisations = &mut work.factorisations;
                 tangent = tangent::tangent_and_error(&system, &corrected, self.rate, &mut None, factorisations)
                     .ok_or(singular)?;
-                if !settles || change <= SETTLED_ANGLE {
+                if !settles {
+                    break;
+                }
+                let unsettled;
+                (settles, unsettled) = passes.advance(&mut system, self.rate, &corrected, &tangent);
+                if unsettled <= SETTLED_ANGLE {
                     break;
                 }
                 if pass == MOST_PASSES {
                     return Err(Refused::Newton(Failure::NotConverged));
                 }
             }
-            let turn = slip_turn_update::largest_turn(&system, &corrected, None);
+            let turn = slip_turn_update::largest_turn(&system, &corrected);
             if turn > LARGEST_TURN {
                 return Err(Refused::Turned(turn));
             }

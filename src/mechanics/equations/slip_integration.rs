@@ -107,6 +107,57 @@ impl Turn {
             _ => 0.0,
         }
     }
+
+    /// Whether the direction at the end settles.
+    pub fn settles(&self) -> bool {
+        self.settling.is_some_and(|settling| settling.share() > 0.0)
+    }
+
+    /// The angle (radians) by which the turn at the end enters the rule, as the last solve gives it: `θ*` where the
+    /// direction settles, else the turn over the whole track; `None` where the rule takes no turn at the end.
+    pub fn entering(&self, chord: f64) -> Option<f64> {
+        match self.settling.filter(|settling| settling.share() > 0.0) {
+            Some(settling) => Some(settling.ahead + settling.share() * settling.angle),
+            None => self.at_end.map(|turn| turn * chord),
+        }
+    }
+
+    /// Lets another angle enter the rule.
+    pub fn enter(&mut self, angle: f64, chord: f64) {
+        match self.settling.as_mut().filter(|settling| settling.share() > 0.0) {
+            Some(settling) => settling.ahead = angle - settling.share() * settling.angle,
+            None => self.at_end = Some(angle / chord),
+        }
+    }
+
+    /// The derivative of the direction at the end with respect to the angle that enters the rule, on a chord that is
+    /// held.
+    pub fn effect(&self) -> f64 {
+        match self.settling.filter(|settling| settling.share() > 0.0) {
+            Some(settling) => {
+                let (share, slope) = (self.share_of_second_rule(&settling), settling.share() * settling.quickness);
+                settling.quickness * Self::by_turned(share) / Self::by_last(share, slope)
+            }
+            None if self.at_start.is_none() => 0.25,
+            None => 1.0 / 6.0,
+        }
+    }
+
+    /// The weight of the second rule: without a turn at the start only that one is there.
+    fn share_of_second_rule(&self, settling: &Settling) -> f64 {
+        if self.at_start.is_some() { settling.share() } else { 1.0 }
+    }
+
+    /// The derivative of the angle of the chord with respect to `-h κ₁`, with a weight of the second rule.
+    fn by_turned(share: f64) -> f64 {
+        (1.0 - share) / 12.0 + share / 6.0
+    }
+
+    /// The derivative of the angle of the chord with respect to that of the direction at the end, where `h κ₁` has the
+    /// derivative `-slope`.
+    fn by_last(share: f64, slope: f64) -> f64 {
+        (1.0 - share) * 0.5 + share * 2.0 / 3.0 + slope * Self::by_turned(share)
+    }
 }
 
 impl Settling {
@@ -165,15 +216,14 @@ impl Rule {
         let arc = arc(length, carried, direction);
         let chord_angle = if length > 0.0 { angle(&frame.normal, carried, chord) } else { 0.0 };
         let last = angle(&frame.normal, carried, direction);
-        let share = if turn.at_start.is_some() { settling.share() } else { 1.0 };
+        let share = turn.share_of_second_rule(settling);
         let quickness = settling.quickness.min(LARGEST_SETTLING);
         // `h κ₁` at the direction of the last solve is `z` times the angle `θ* - θ` there.
         let slope = settling.share() * quickness;
         let turned = quickness * settling.ahead - slope * (last - settling.angle);
         let first = (1.0 - share) * (0.5 * last + (turn.at_start.unwrap_or(0.0) * arc - turned) / 12.0);
         let second = share * (2.0 / 3.0 * last - turned / 6.0);
-        let by_last = (1.0 - share) * (0.5 + slope / 12.0) + share * (2.0 / 3.0 + slope / 6.0);
-        let factor = 1.0 / by_last;
+        let factor = 1.0 / Turn::by_last(share, slope);
         let along = if length > 0.0 { scaled(chord, 1.0 / length) } else { *carried };
         Self {
             left_over: length * factor * (chord_angle - first - second),
