@@ -189,7 +189,7 @@ impl StepStart<'_> {
         if system.has_tracks() {
             // Solve again, now that the turn of the slips at the end is known; where directions settle, until they
             // have.
-            let mut settles = slip_turn_update::set_turns(&mut system, self.rate, &corrected, &tangent);
+            let mut is_last = !slip_turn_update::set_turns(&mut system, self.rate, &corrected, &tangent);
             let mut passes = SettlingPasses::default();
             for pass in 1.. {
                 let again = newton::correct_from(
@@ -208,14 +208,12 @@ impl StepStart<'_> {
                 let factorisations = &mut work.factorisations;
                 tangent = tangent::tangent_and_error(&system, &corrected, self.rate, &mut None, factorisations)
                     .ok_or(singular)?;
-                if !settles {
+                if is_last {
                     break;
                 }
-                let unsettled;
-                (settles, unsettled) = passes.advance(&mut system, self.rate, &corrected, &tangent);
-                if unsettled <= SETTLED_ANGLE {
-                    break;
-                }
+                let (settles, unsettled) = passes.advance(&mut system, self.rate, &corrected, &tangent);
+                // What the last solve leaves is far below this: the estimate of the error compares two such ends.
+                is_last = !settles || unsettled <= SETTLED_ANGLE;
                 if pass == MOST_PASSES {
                     return Err(Refused::Newton(Failure::NotConverged));
                 }

@@ -11,11 +11,13 @@
 //! with the angles of `d` from a scan of the circle. The pattern on which the sweeps settle is solved by Newton's
 //! method in the weights and the angles, to round-off, and kept if it satisfies every inequality. Sweeps start from all
 //! combinations of the solutions of each contact alone, up to a bound. Where the contacts are uncoupled, these are all
-//! directions; otherwise completeness is not claimed.
+//! directions; otherwise completeness is not claimed. Where no sweeps settle, as where the contacts are those of a solid,
+//! the pattern is found by `friction_newton`.
 
 use crate::algebra::Factorisation;
 use crate::algebra::scalar_root::find_root;
 use crate::complementarity::rate_search::branch_and_bound::Ray;
+use crate::complementarity::rate_search::friction_newton::{Behaviour, FrictionEquations, Law};
 use crate::complementarity::rate_search::slip_onset_direction::{SECTORS, Touch, Turning};
 use crate::complementarity::rate_search::tolerances::{COEFFICIENT_ROUND_OFF, RATE_TOLERANCE, SETTLED_CHANGE};
 use crate::complementarity::rates::cartesian_product::{combinations, count};
@@ -62,6 +64,7 @@ pub(crate) fn slips(problem: &RateProblem, touches: &[Touch], cancel: &CancelFla
         let alone: Vec<Vec<NodeSolution>> = system.nodes.iter().map(|node| node.solutions(problem, &weights)).collect();
         let places: Vec<Vec<usize>> = alone.iter().map(|one| (0..one.len().max(1)).collect()).collect();
         complete &= count(&places) <= MOST_STARTS;
+        let mut has_settled = false;
         for chosen in combinations(&places, MOST_STARTS) {
             if cancel.is_cancelled() {
                 return AtOnce { rays, complete: false };
@@ -77,15 +80,26 @@ pub(crate) fn slips(problem: &RateProblem, touches: &[Touch], cancel: &CancelFla
                 complete = false;
                 continue;
             };
-            let known = |one: &Turning| {
-                (&one.ray.weights - &found.ray.weights).amax() <= RATE_TOLERANCE * found.ray.weights.amax()
-            };
-            if !found.slips.is_empty() && !rays.iter().any(known) {
-                rays.push(found);
-            }
+            has_settled = true;
+            keep(&mut rays, found);
+        }
+        if !has_settled
+            && let Some((pattern, start)) = system.by_newton(&weights, cancel)
+            && let Some(found) = system.refined(pattern, start)
+        {
+            keep(&mut rays, found);
         }
     }
     AtOnce { rays, complete }
+}
+
+/// Adds a ray with slips that is not yet there.
+fn keep(rays: &mut Vec<Turning>, found: Turning) {
+    let known =
+        |one: &Turning| (&one.ray.weights - &found.ray.weights).amax() <= RATE_TOLERANCE * found.ray.weights.amax();
+    if !found.slips.is_empty() && !rays.iter().any(known) {
+        rays.push(found);
+    }
 }
 
 /// A touching node with the columns of its velocities.
@@ -181,6 +195,47 @@ impl<'a> SlipEquations<'a> {
             }
         }
         None
+    }
+
+    /// The pattern by a semismooth Newton method, which strongly coupled nodes do not slow down.
+    fn by_newton(&self, weights: &DVector<f64>, cancel: &CancelFlag) -> Option<(OptionPattern, DVector<f64>)> {
+        let count = weights.len() - 1;
+        let mut forces = vec![usize::MAX; count];
+        let mut laws = Vec::with_capacity(self.nodes.len() + self.others.len());
+        for node in &self.nodes {
+            node.columns.iter().zip(node.touch.forces).for_each(|(column, force)| forces[*column] = force);
+            laws.push(Law::Friction(node.columns, node.touch.friction));
+        }
+        for (_, local) in &self.others {
+            let Local::Pair { force, velocity } = *local else { return None };
+            forces[velocity] = force;
+            laws.push(Law::Frictionless(velocity));
+        }
+        if forces.contains(&usize::MAX) {
+            return None;
+        }
+        let _held = budget::take::<f64>(2 * count * count);
+        let rows = self.problem.forms.select_rows(&forces);
+        let load = rows.column(count) * weights[count];
+        let equations = FrictionEquations::new(rows.columns(0, count).into_owned(), laws)?;
+        let (velocities, behaviours) = equations.solve(&load, cancel)?;
+        let mut pattern = OptionPattern { chosen: vec![0; self.problem.entities.len()], own: Vec::new() };
+        for (node, behaviour) in self.nodes.iter().zip(&behaviours) {
+            pattern.own.push(match behaviour {
+                Behaviour::Stick => Own::Stick,
+                Behaviour::Free => Own::Free,
+                Behaviour::Slip => {
+                    let [_, first, second] = node.columns.map(|column| velocities[column]);
+                    Own::Slip { angle: second.atan2(first) }
+                }
+            });
+        }
+        for ((entity, _), behaviour) in self.others.iter().zip(&behaviours[self.nodes.len()..]) {
+            pattern.chosen[*entity] = usize::from(*behaviour == Behaviour::Free);
+        }
+        let mut found = weights.clone();
+        found.rows_mut(0, count).copy_from(&velocities);
+        Some((pattern, found))
     }
 
     /// Applies Newton's method to weights and angles; returns the ray if it satisfies all inequalities.

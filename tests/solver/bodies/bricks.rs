@@ -68,10 +68,19 @@ impl Brick {
         self.layer(self.cells[2])
     }
 
-    /// The nodes of the side at the beginning of the first or the second direction.
+    /// The nodes of the side at the beginning of a direction.
     pub fn side(&self, axis: usize) -> Vec<String> {
+        self.nodes_where(|at| at[axis] == 0)
+    }
+
+    /// The nodes of both sides at the ends of a direction.
+    pub fn ends(&self, axis: usize) -> Vec<String> {
+        self.nodes_where(|at| at[axis] == 0 || at[axis] == self.cells[axis])
+    }
+
+    fn nodes_where(&self, chosen: impl Fn([usize; 3]) -> bool) -> Vec<String> {
         let all = iproduct!(0..=self.cells[0], 0..=self.cells[1], 0..=self.cells[2]).map(|(i, j, k)| [i, j, k]);
-        all.filter(|at| at[axis] == 0).map(|at| self.name(at)).collect()
+        all.filter(|at| chosen(*at)).map(|at| self.name(at)).collect()
     }
 
     /// The faces of the lowest or of the highest layer.

@@ -4,6 +4,7 @@ mod arches;
 mod bad_bodies;
 mod blocks;
 mod bricks;
+mod crossed_bars;
 mod hertz;
 mod itself;
 mod random_pairs;
