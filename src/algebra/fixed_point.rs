@@ -20,8 +20,10 @@ pub(crate) struct Acceleration {
 }
 
 impl Acceleration {
-    /// The next point, after a point and its image, both of the length of those before.
-    pub fn next(&mut self, point: &[f64], image: &[f64]) -> Vec<f64> {
+    /// The next point, after a point and its image, both of the length of those before; residuals are compared by these
+    /// weights.
+    pub fn next(&mut self, point: &[f64], image: &[f64], weights: &[f64]) -> Vec<f64> {
+        let weights = DVector::from_column_slice(weights);
         let image = DVector::from_column_slice(image);
         self.residuals.push(&image - DVector::from_column_slice(point));
         self.images.push(image);
@@ -36,15 +38,16 @@ impl Acceleration {
                 let columns: Vec<_> = (0..count).map(|back| &of[last - back] - &of[last - back - 1]).collect();
                 DMatrix::from_columns(&columns)
             };
-            let (orthogonal, triangular) = differences(&self.residuals).qr().unpack();
+            let weighted = DMatrix::from_diagonal(&weights) * differences(&self.residuals);
+            let (orthogonal, triangular) = weighted.qr().unpack();
             let part = |column: usize| triangular[(column, column)].abs();
             let largest = (0..count).map(part).fold(0.0, f64::max);
             if (0..count).any(|column| part(column) <= SMALLEST_PART * largest) {
                 continue;
             }
-            let projected = orthogonal.transpose() * &self.residuals[last];
-            if let Some(weights) = triangular.solve_upper_triangular(&projected) {
-                let next = &self.images[last] - differences(&self.images) * weights;
+            let projected = orthogonal.transpose() * self.residuals[last].component_mul(&weights);
+            if let Some(shares) = triangular.solve_upper_triangular(&projected) {
+                let next = &self.images[last] - differences(&self.images) * shares;
                 if next.iter().all(|value| value.is_finite()) {
                     return next.as_slice().to_vec();
                 }
@@ -67,7 +70,7 @@ mod tests {
             if residual <= 1e-12 {
                 return pass;
             }
-            point = if is_accelerated { acceleration.next(&point, &image) } else { image };
+            point = if is_accelerated { acceleration.next(&point, &image, &vec![1.0; point.len()]) } else { image };
         }
         200
     }
@@ -92,7 +95,7 @@ mod tests {
     fn a_point_that_is_its_own_image_stays() {
         let mut acceleration = Acceleration::default();
         for _ in 0..3 {
-            assert_eq!(acceleration.next(&[1.0, 2.0], &[1.0, 2.0]), [1.0, 2.0]);
+            assert_eq!(acceleration.next(&[1.0, 2.0], &[1.0, 2.0], &[1.0, 1.0]), [1.0, 2.0]);
         }
     }
 }

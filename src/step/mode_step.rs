@@ -214,7 +214,7 @@ impl StepStart<'_> {
                 let (settles, unsettled) = passes.advance(&mut system, self.rate, &corrected, &tangent);
                 // What the last solve leaves is far below this: the estimate of the error compares two such ends.
                 is_last = !settles || unsettled <= SETTLED_ANGLE;
-                if pass == MOST_PASSES {
+                if !is_last && pass == MOST_PASSES {
                     return Err(Refused::Newton(Failure::NotConverged));
                 }
             }

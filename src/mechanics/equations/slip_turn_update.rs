@@ -70,6 +70,8 @@ impl SettlingPasses {
         let posed: Vec<Turn> = system.tracks.iter().map(|track| track.turn).collect();
         let settles = set_turns(system, start, end, tangent);
         let (mut tracks, mut point, mut image, mut chords) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        // What a direction does to the others is the force that it turns: one that is hardly pressed is left alone.
+        let mut weights = Vec::new();
         let (mut unsettled, mut is_same_rule) = (0.0_f64, true);
         for (index, role) in system.roles.iter().enumerate() {
             let Role::Plane { track } = *role else { continue };
@@ -86,6 +88,8 @@ impl SettlingPasses {
                     point.push(before);
                     image.push(now);
                     chords.push(chord);
+                    let friction = system.loading.contacts[index].friction;
+                    weights.push(turn.effect() * friction.bound(end.state.reactions[index].normal));
                 }
                 (before, now) => is_same_rule &= before.is_some() == now.is_some(),
             }
@@ -96,7 +100,7 @@ impl SettlingPasses {
         if !is_same_rule {
             return (settles, f64::INFINITY);
         }
-        let next = self.acceleration.next(&point, &image);
+        let next = self.acceleration.next(&point, &image, &weights);
         for ((&track, angle), chord) in self.tracks.iter().zip(next).zip(chords) {
             system.tracks[track].turn.enter(angle, chord);
         }
