@@ -2,10 +2,12 @@
 
 mod arches;
 mod bad_bodies;
+mod belts;
 mod blocks;
 mod bricks;
 mod crossed_bars;
 mod hertz;
+mod hooks;
 mod itself;
 mod random_pairs;
 mod spheres;
