@@ -57,7 +57,7 @@ pub(super) struct FrictionEquations {
 }
 
 /// A projection with its derivative.
-struct Projected {
+struct ConeProjection {
     value: Vector3<f64>,
     derivative: Matrix3<f64>,
     behaviour: Behaviour,
@@ -216,9 +216,9 @@ impl Law {
     }
 
     /// The projection of `Ṙ - ρ (v + μ |v_t| n)` on the cone.
-    fn projected(&self, reactions: &DVector<f64>, velocities: &DVector<f64>, step: f64) -> Projected {
+    fn projected(&self, reactions: &DVector<f64>, velocities: &DVector<f64>, step: f64) -> ConeProjection {
         let point = self.values(reactions) - self.corrected(velocities) * step;
-        let of = |value, derivative, behaviour| Projected { value, derivative, behaviour };
+        let of = |value, derivative, behaviour| ConeProjection { value, derivative, behaviour };
         let Self::Friction(_, friction) = self else {
             return if point[0] > 0.0 {
                 of(point, Matrix3::identity(), Behaviour::Stick)
