@@ -2,7 +2,7 @@
 GetFEM and CalculiX on the same mesh and one thread: seconds of the processor an increment and for the path.
 
     PYTHON tests/benches/solid_block.py target/release/arcslip 40 128
-    PYTHON tests/benches/solid_block.py target/release/arcslip tied 40 128 448 1400
+    PYTHON tests/benches/solid_block.py target/release/arcslip tied 40 128 448
 
 The numbers are cells along the block, a quarter of them across. arcslip locates the slip of every node, lists
 directions and judges each increment; GetFEM (Debian's python3-getfem) solves an augmented Lagrangian of the contact,

@@ -1,9 +1,8 @@
 //! A belt on an elastic drum.
 
-use super::{Sheet, faces, support};
-use crate::common::paths::{judged, request};
+use super::{Sheet, faces, support, whole_path};
+use crate::common::paths::request;
 use arcslip::result::increment::{Increment, Status};
-use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
 use std::f64::consts::FRAC_PI_2;
 
@@ -70,25 +69,16 @@ fn error_of_capstan(increment: &Increment, end: &str) -> f64 {
 #[test]
 fn a_belt_slips_around_an_elastic_drum() {
     for (elements, cells, swapped, bar) in [(12, 16, false, 6e-3), (12, 16, true, 6e-3), (24, 32, false, 4e-3)] {
-        let traced = judged(&request(&belt(elements, cells, swapped).to_string()));
         let what = format!("{elements} elements on {cells} cells, swapped {swapped}");
-        assert_eq!(traced.report.stop_reason, StopReason::StagesCompleted, "{what}");
-        for (increment, errors) in traced.increments.iter().zip(&traced.errors) {
-            assert!(errors.largest_of_state() <= 1e-9, "{what}, increment {}: {errors:?}", increment.index);
-            assert!(errors.energy <= 1e-6, "{what}, increment {}: {errors:?}", increment.index);
-        }
+        let increments = whole_path(&request(&belt(elements, cells, swapped).to_string()));
         let end = format!("b{}", elements + 2 * TAIL);
         let slips = |increment: &&Increment| {
             &*increment.stage == "pull" && increment.contacts.iter().all(|contact| contact.status != Status::Stick)
         };
         let errors: Vec<f64> =
-            traced.increments.iter().filter(slips).map(|increment| error_of_capstan(increment, &end)).collect();
+            increments.iter().filter(slips).map(|increment| error_of_capstan(increment, &end)).collect();
         let largest = errors.iter().fold(0.0_f64, |largest, error| largest.max(error.abs()));
-        println!(
-            "{what}: {} increments of {} in full slip, error {largest:.1e}",
-            errors.len(),
-            traced.increments.len()
-        );
+        println!("{what}: {} increments of {} in full slip, error {largest:.1e}", errors.len(), increments.len());
         assert!(errors.len() > 50 && largest < bar, "{what}: {} increments, {largest:e}", errors.len());
     }
 }
