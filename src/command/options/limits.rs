@@ -17,14 +17,14 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = Limits::default().queued, env = "ARCSLIP_MAX_QUEUED",
         value_parser = clap::value_parser!(u64).range(1..))]
     max_queued: u64,
-    /// Size of a request, such as `4MiB`; at most 16 MiB.
+    /// Size of a request, such as `64MiB`; at most 256 MiB.
     #[arg(long, value_name = "BYTES", default_value = "16MiB", env = "ARCSLIP_MAX_BODY", value_parser = body)]
     max_body: usize,
-    /// Nodes of a model, at most 100,000.
+    /// Nodes of a model, at most 1,000,000.
     #[arg(long, value_name = "N", default_value_t = Limits::default().nodes, env = "ARCSLIP_MAX_NODES",
         value_parser = |text: &str| count(text, MAX_NODES))]
     max_nodes: usize,
-    /// Elements of a model, at most 250,000.
+    /// Elements of a model, at most 2,500,000.
     #[arg(long, value_name = "N", default_value_t = Limits::default().elements, env = "ARCSLIP_MAX_ELEMENTS",
         value_parser = |text: &str| count(text, MAX_ELEMENTS))]
     max_elements: usize,
@@ -88,7 +88,7 @@ fn body(text: &str) -> Result<usize, String> {
     usize::try_from(found)
         .ok()
         .filter(|found| *found <= MAX_TEXT_BYTES)
-        .ok_or_else(|| "at most 16MiB is expected".to_owned())
+        .ok_or_else(|| "at most 256MiB is expected".to_owned())
 }
 
 fn keep(text: &str) -> Result<Keep, String> {
@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn bodies_and_what_is_kept_are_read() {
-        assert!(body("16MiB").is_ok() && body("17MiB").is_err());
+        assert!(body("256MiB").is_ok() && body("257MiB").is_err());
         assert_eq!(keep("0"), Ok(Keep::Newest(0)));
         assert_eq!(keep("1d"), Ok(Keep::For(Duration::from_secs(86_400))));
         assert!(keep("soon").is_err() && keep("-1").is_err());

@@ -9,7 +9,7 @@ use std::fmt;
 use serde::de::{self, DeserializeSeed, MapAccess, SeqAccess, Visitor};
 
 use crate::model::InputError;
-use crate::model::input::limits::{MAX_TEXT_BYTES, MAX_VALUES};
+use crate::model::input::limits::{MAX_TEXT_BYTES, max_values};
 use crate::model::input::names::quoted;
 
 /// A JSON value; members in the order of the text, duplicates included.
@@ -36,7 +36,7 @@ impl Json {
     ///
     /// # Errors
     /// Text that is too long, not UTF-8, not JSON, nested too deeply, with a number out of range, with more than
-    /// [`MAX_VALUES`] values or with anything after the document; line and column are in the detail.
+    /// [`max_values`] values or with anything after the document; line and column are in the detail.
     pub fn parse(text: &[u8], what: &str) -> Result<Self, InputError> {
         let whole = |detail: String| Err(InputError::new("", detail));
         if text.len() > MAX_TEXT_BYTES {
@@ -52,9 +52,11 @@ impl Json {
         if text.starts_with("\u{feff}".as_bytes()) {
             return whole("the document starts with a byte order mark; plain UTF-8 without one is expected".to_owned());
         }
-        let left = Cell::new(MAX_VALUES);
+        let most = max_values(text.len());
+        let left = Cell::new(most);
         let mut source = serde_json::Deserializer::from_slice(text);
-        let parsed = Value { left: &left }.deserialize(&mut source).and_then(|value| source.end().map(|()| value));
+        let parsed =
+            Value { left: &left, most }.deserialize(&mut source).and_then(|value| source.end().map(|()| value));
         parsed.or_else(|error| whole(format!("not a JSON document that can be read: {}", told(text, &error))))
     }
 
@@ -126,6 +128,7 @@ fn position(text: &[u8], byte: usize) -> (usize, usize) {
 #[derive(Clone, Copy)]
 struct Value<'a> {
     left: &'a Cell<usize>,
+    most: usize,
 }
 
 impl<'de> DeserializeSeed<'de> for Value<'_> {
@@ -135,7 +138,8 @@ impl<'de> DeserializeSeed<'de> for Value<'_> {
         match self.left.get().checked_sub(1) {
             Some(left) => self.left.set(left),
             None => {
-                return Err(de::Error::custom(format!("more than {MAX_VALUES} values, the largest number accepted")));
+                let most = self.most;
+                return Err(de::Error::custom(format!("more than {most} values, the largest number accepted")));
             }
         }
         source.deserialize_any(self)
@@ -227,8 +231,8 @@ mod tests {
     fn nesting_and_size_are_bounded() {
         let deep = [vec![b'['; 1_000_000], vec![b']'; 1_000_000]].concat();
         assert!(refusal(&deep).contains("recursion limit exceeded"));
-        assert!(refusal(&vec![b' '; MAX_TEXT_BYTES + 1]).contains("at most 16777216"));
-        let many = format!("[{}0]", "0,".repeat(MAX_VALUES));
+        assert!(refusal(&vec![b' '; MAX_TEXT_BYTES + 1]).contains("at most 268435456"));
+        let many = format!("[{}0]", "0,".repeat(max_values(0)));
         assert!(refusal(many.as_bytes()).contains("more than 4000000 values"));
     }
 

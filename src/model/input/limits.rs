@@ -1,18 +1,24 @@
 //! Limits on the sizes and magnitudes of a request; an error names the limit that is exceeded.
 
-/// Bytes of one JSON document.
-pub const MAX_TEXT_BYTES: usize = 16 * 1024 * 1024;
-/// Values (numbers, strings, arrays, objects) in a JSON document, which bounds the memory for reading.
+/// Bytes of one JSON document: the mesh of a million unknowns takes some 90 million.
+pub const MAX_TEXT_BYTES: usize = 256 * 1024 * 1024;
+/// Bytes of one JSON document that a service accepts unless it is told otherwise.
+pub const USUAL_TEXT_BYTES: usize = 16 * 1024 * 1024;
+/// Values (numbers, strings, arrays, objects) in a JSON document of the usual size, which bounds the memory for reading.
 pub const MAX_VALUES: usize = 4_000_000;
+/// Values in a JSON document of so many bytes.
+pub const fn max_values(bytes: usize) -> usize {
+    if bytes > USUAL_TEXT_BYTES { bytes / 4 } else { MAX_VALUES }
+}
 /// Mistakes listed for one document; a last entry says how many more there are.
 pub const MAX_LISTED_MISTAKES: usize = 100;
 /// Bytes of the name of a model, node, obstacle or stage.
 pub const MAX_NAME_BYTES: usize = 200;
 
 /// Nodes of a model; as many may be named in `supports`.
-pub const MAX_NODES: usize = 100_000;
+pub const MAX_NODES: usize = 1_000_000;
 /// Elements of a model.
-pub const MAX_ELEMENTS: usize = 250_000;
+pub const MAX_ELEMENTS: usize = 2_500_000;
 /// Obstacles of a model.
 pub const MAX_OBSTACLES: usize = 20_000;
 /// Points of one polyline.
@@ -38,7 +44,7 @@ pub const MIN_JUMP_TOLERANCE: f64 = 1e-8;
 /// Upper bound of `analysis.jump_motion.max_steps`.
 pub const MAX_JUMP_STEPS: u64 = 10_000_000;
 /// Free displacement components. From some hundred on matrices are sparse.
-pub const MAX_UNKNOWNS: usize = 150_000;
+pub const MAX_UNKNOWNS: usize = 1_500_000;
 /// Free displacement components for the methods `mpec` and `regularised`, whose matrices are dense: memory goes with the
 /// square and time with the cube.
 pub const MAX_DENSE_UNKNOWNS: usize = crate::mechanics::structure::MOST_ANALYSED;

@@ -1,6 +1,5 @@
 //! The stored request of a job.
 
-use crate::model::input::limits::MAX_TEXT_BYTES;
 use crate::model::{JobRequest, decode};
 use crate::service::http::answer::problem::{Kind, Problem};
 use crate::service::http::answer::tag;
@@ -42,26 +41,30 @@ pub async fn request(
     // The request never changes, so that its tag holds before the job has ended.
     let is_expanded = parameters.expanded.unwrap_or(false);
     // A short text may name large sets many times.
-    let bytes = if is_expanded { MOST_EXPANDED } else { text.len() };
+    let most = service.jobs.settings.limits.body_bytes.saturating_mul(EXPANSION);
+    let bytes = if is_expanded { most } else { text.len() };
     let make = move || {
-        let text = if is_expanded { expanded(&text)? } else { text.into_bytes() };
+        let text = if is_expanded { expanded(&text, most)? } else { text.into_bytes() };
         tag::bytes(&headers, true, [(header::CONTENT_TYPE, "application/json")], text)
     };
     service.offload.run(bytes, make).await
 }
 
-/// Bytes of an expanded request at most.
-const MOST_EXPANDED: usize = 4 * MAX_TEXT_BYTES;
+/// An expanded request may be so many times as long as a posted one.
+const EXPANSION: usize = 4;
 
 /// Bytes up to a number.
-struct BoundedText(Vec<u8>);
+struct BoundedText {
+    text: Vec<u8>,
+    most: usize,
+}
 
 impl Write for BoundedText {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        if self.0.len() + bytes.len() > MOST_EXPANDED {
+        if self.text.len() + bytes.len() > self.most {
             return Err(std::io::ErrorKind::FileTooLarge.into());
         }
-        self.0.extend_from_slice(bytes);
+        self.text.extend_from_slice(bytes);
         Ok(bytes.len())
     }
 
@@ -71,15 +74,14 @@ impl Write for BoundedText {
 }
 
 /// The text of the expanded request.
-fn expanded(text: &str) -> Result<Vec<u8>, Problem> {
+fn expanded(text: &str, most: usize) -> Result<Vec<u8>, Problem> {
     // A stored request has been read before.
     let request = decode::decode(text.as_bytes())
         .map_err(|errors| Problem::new(Kind::Internal, format!("the stored request cannot be read: {errors}")))?;
-    let mut bounded = BoundedText(Vec::with_capacity(text.len()));
+    let mut bounded = BoundedText { text: Vec::with_capacity(text.len()), most };
     serde_json::to_writer(&mut bounded, &request).map_err(|_| {
-        let detail =
-            format!("expanded, the request has more than {MOST_EXPANDED} bytes; without `expanded` it is given");
+        let detail = format!("expanded, the request has more than {most} bytes; without `expanded` it is given");
         Problem::new(Kind::AnswerTooLarge, detail)
     })?;
-    Ok(bounded.0)
+    Ok(bounded.text)
 }

@@ -1,7 +1,7 @@
 //! Limits on the requests that a service accepts and on the resources that a job may use. They can only be stricter than the
 //! limits of the [model](crate::model::input::limits).
 
-use crate::model::input::limits::{MAX_CONTACTS, MAX_ELEMENTS, MAX_INCREMENTS, MAX_NODES, MAX_TEXT_BYTES};
+use crate::model::input::limits::{MAX_CONTACTS, MAX_INCREMENTS, USUAL_TEXT_BYTES};
 use crate::model::{InputError, InputErrors, Model};
 use crate::resources::budget::Bounds;
 use std::fmt;
@@ -37,9 +37,9 @@ impl Default for Limits {
     fn default() -> Self {
         Self {
             queued: 20_000,
-            body_bytes: MAX_TEXT_BYTES,
-            nodes: MAX_NODES,
-            elements: MAX_ELEMENTS,
+            body_bytes: USUAL_TEXT_BYTES,
+            nodes: 100_000,
+            elements: 250_000,
             contacts: MAX_CONTACTS,
             increments: MAX_INCREMENTS,
             check_time: Duration::from_secs(120),

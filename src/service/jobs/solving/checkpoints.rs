@@ -11,9 +11,9 @@ use crate::service::store::{Checkpoint, Origin};
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 
-/// Larger checkpoints (bytes) are not stored: such a job starts again when its worker is lost. 150,000 unknowns take about
-/// 20 MB.
-const LARGEST: usize = 64 << 20;
+/// Larger checkpoints (bytes) are not stored: such a job starts again when its worker is lost. 1,000,000 unknowns take
+/// about 130 MB.
+const LARGEST: usize = 256 << 20;
 
 /// A stored checkpoint without the trail.
 #[derive(Debug, Serialize, Deserialize)]
