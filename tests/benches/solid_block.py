@@ -3,11 +3,13 @@ GetFEM and CalculiX on the same mesh and one thread: seconds of the processor an
 
     PYTHON tests/benches/solid_block.py target/release/arcslip 40 128
     PYTHON tests/benches/solid_block.py target/release/arcslip tied 40 128 448
+    PYTHON tests/benches/solid_block.py target/release/arcslip cube 12 20 30
 
 The numbers are cells along the block, a quarter of them across. arcslip locates the slip of every node, lists
 directions and judges each increment; GetFEM (Debian's python3-getfem) solves an augmented Lagrangian of the contact,
 CalculiX (`ccx`) a penalty, both in 4 increments down and 16 along. Each time is the median of several runs in turn.
-A program that is not installed has no rows. `tied` glues the block to the plane, for arcslip alone: time and memory.
+A program that is not installed has no rows. `tied` glues the block to the plane, for arcslip alone: time and memory. `cube` is a cube in space with so many cells
+along each edge, glued at its foot and pressed on its top, for arcslip alone and solved once.
 """
 
 import json
@@ -34,8 +36,10 @@ RUNS = 3
 YOUNG, POISSON, FRICTION = 1e3, 0.3, 0.5
 DOWN, ALONG = -0.02, 0.06
 DOWNWARDS, SIDEWARDS = 4, 16
-# The number of increments of a tied block.
-TIED = 12
+# The number of increments of a tied block, and of a cube.
+TIED, OF_CUBE = 12, 3
+# Limits that fit the largest of them.
+LIMITS = ["--max-memory", "20GiB", "--max-factor-entries", "1000000000", "--max-factor-work", "100000000000000"]
 
 
 def request(cells, is_tied):
@@ -66,6 +70,25 @@ def request(cells, is_tied):
     return {"model": model, "analysis": {"max_increments": increments, "record": {"elements": "none", "nodes": []}}}
 
 
+def cube_request(cells):
+    edge = range(cells + 1)
+    name = "n{}_{}_{}".format
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    foot, top = ([name(i, j, k) for j in edge for i in edge] for k in (0, cells))
+    model = {
+        "dimension": 3,
+        "nodes": {name(i, j, k): [i / cells, j / cells, k / cells] for k in edge for j in edge for i in edge},
+        "materials": {"rubber": {"kind": "neo_hookean", "young": YOUNG, "poisson": POISSON}},
+        "elements": [
+            {"kind": "hexahedron8", "nodes": [name(i + a, j + b, k + c) for a, b, c in corners], "material": "rubber"}
+            for k in range(cells) for j in range(cells) for i in range(cells)
+        ],
+        "supports": {node: ["x", "y", "z"] for node in foot + top},
+        "stages": [{"name": "press", "displacements": {node: [0, 0, DOWN] for node in top}, "until": {"load_above": 1}}],
+    }
+    return {"model": model, "analysis": {"max_increments": OF_CUBE, "record": {"elements": "none", "nodes": []}}}
+
+
 def run(command, folder):
     """Output, seconds of the processor, and the largest memory (MiB) of any run so far."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -75,9 +98,9 @@ def run(command, folder):
     return done, spent, after.ru_maxrss / 1024
 
 
-def by_arcslip(program, cells, is_tied, folder):
-    (folder / "block.json").write_text(json.dumps(request(cells, is_tied)))
-    done, spent, memory = run([program, "solve", "block.json", "--out", "path.ndjson"], folder)
+def by_arcslip(program, asked, folder):
+    (folder / "block.json").write_text(json.dumps(asked))
+    done, spent, memory = run([program, "solve", "block.json", "--out", "path.ndjson", *LIMITS], folder)
     report = json.loads(done.stderr[done.stderr.index('{"stop_reason"'):])
     lines = [json.loads(line) for line in (folder / "path.ndjson").open()]
     increments = [line for line in lines if "index" in line and "contacts" in line]
@@ -164,16 +187,25 @@ def by_calculix(cells, folder):
     return spent, abs(pushed / pressed)
 
 
-def tied(program, sizes, folder):
+def table_of(program, scenes, runs, folder):
     print("| unknowns | ms an increment | increments | largest memory, MiB | bytes an unknown |")
     print("|--:|--:|--:|--:|--:|")
-    for cells in sorted(sizes):
-        rows = [by_arcslip(program, cells, True, folder) for _ in range(RUNS)]
-        unknowns = 2 * (cells + 1) * (cells // 4 - 1)
+    for unknowns, asked in scenes:
+        rows = [by_arcslip(program, asked, folder) for _ in range(runs)]
         elapsed = statistics.median(row[4] for row in rows)
         memory = rows[-1][3]
         print(f"| {unknowns:,} | {elapsed * 1e3 / rows[0][1]:.3g} | {rows[0][1]} | {memory:.0f} | "
               f"{memory * 2**20 / unknowns:,.0f} |", flush=True)
+
+
+def tied(program, sizes, folder):
+    scenes = ((2 * (cells + 1) * (cells // 4 - 1), request(cells, True)) for cells in sorted(sizes))
+    table_of(program, scenes, RUNS, folder)
+
+
+def cube(program, sizes, folder):
+    scenes = ((3 * (cells + 1) ** 2 * (cells - 1), cube_request(cells)) for cells in sorted(sizes))
+    table_of(program, scenes, 1, folder)
 
 
 def beside_peers(program, sizes, folder):
@@ -183,7 +215,7 @@ def beside_peers(program, sizes, folder):
     for cells in sizes:
         rows = {"arcslip": []} | {peer: [] for peer, solve in peers if solve}
         for _ in range(RUNS):
-            spent, increments, ratio, _, _ = by_arcslip(program, cells, False, folder)
+            spent, increments, ratio, _, _ = by_arcslip(program, request(cells, False), folder)
             rows["arcslip"].append((spent, increments, ratio))
             for peer, solve in peers:
                 if solve:
@@ -198,10 +230,12 @@ def beside_peers(program, sizes, folder):
 
 
 def main():
-    program, is_tied = os.path.abspath(sys.argv[1]), "tied" in sys.argv
-    sizes = [int(size) for size in sys.argv[2:] if size != "tied"]
+    program, words = os.path.abspath(sys.argv[1]), sys.argv[2:]
+    modes = {"tied": tied, "cube": cube}
+    measure = next((modes[word] for word in words if word in modes), beside_peers)
+    sizes = [int(word) for word in words if word not in modes]
     with tempfile.TemporaryDirectory() as folder:
-        (tied if is_tied else beside_peers)(program, sizes, pathlib.Path(folder))
+        measure(program, sizes, pathlib.Path(folder))
 
 
 main()

@@ -3,7 +3,8 @@
 //! | file | contents |
 //! |---|---|
 //! | `pattern` | the sparsity pattern of a matrix, found once |
-//! | `elimination_order` | the elimination order that keeps the factors sparse (AMD), and the size and work of a factor |
+//! | `elimination_order` | the elimination order that keeps the factors sparse (AMD or nested dissection), and the size and work of a factor |
+//! | `nested_dissection` | the elimination order by separators |
 //! | `bordered_matrix` | the assembled matrix |
 //! | `ldl`, `supernodal_ldl` | `K = L D Lᵀ`: small pivots raised, increments removed by borders; in pieces if large |
 //! | `cholesky` | whether a symmetric matrix is positive definite |
@@ -17,6 +18,7 @@ pub(crate) mod elimination_order;
 pub(crate) mod entries;
 pub mod ldl;
 pub(crate) mod lu_pattern;
+pub(crate) mod nested_dissection;
 pub mod pattern;
 pub mod pivoted_lu;
 pub(crate) mod static_pivot_lu;
