@@ -2,14 +2,15 @@
 GetFEM and CalculiX on the same mesh and one thread: seconds of the processor an increment and for the path.
 
     PYTHON tests/benches/solid_block.py target/release/arcslip 40 128
-    PYTHON tests/benches/solid_block.py target/release/arcslip tied 40 128 448
-    PYTHON tests/benches/solid_block.py target/release/arcslip cube 12 20 30
+    PYTHON tests/benches/solid_block.py target/release/arcslip tied 40 128 448 1400
+    PYTHON tests/benches/solid_block.py target/release/arcslip cube 12 20 30 46
 
 The numbers are cells along the block, a quarter of them across. arcslip locates the slip of every node, lists
 directions and judges each increment; GetFEM (Debian's python3-getfem) solves an augmented Lagrangian of the contact,
 CalculiX (`ccx`) a penalty, both in 4 increments down and 16 along. Each time is the median of several runs in turn.
-A program that is not installed has no rows. `tied` glues the block to the plane, for arcslip alone: time and memory. `cube` is a cube in space with so many cells
-along each edge, glued at its foot and pressed on its top, for arcslip alone and solved once.
+A program that is not installed has no rows. `tied` glues the block to the plane, for arcslip alone: time and memory.
+`cube` is a cube in space with so many cells along each edge, glued at its foot and pressed on its top, for arcslip
+alone and solved once.
 """
 
 import json
@@ -84,7 +85,9 @@ def cube_request(cells):
             for k in range(cells) for j in range(cells) for i in range(cells)
         ],
         "supports": {node: ["x", "y", "z"] for node in foot + top},
-        "stages": [{"name": "press", "displacements": {node: [0, 0, DOWN] for node in top}, "until": {"load_above": 1}}],
+        "stages": [
+            {"name": "press", "displacements": {node: [0, 0, DOWN] for node in top}, "until": {"load_above": 1}},
+        ],
     }
     return {"model": model, "analysis": {"max_increments": OF_CUBE, "record": {"elements": "none", "nodes": []}}}
 

@@ -26,8 +26,8 @@ const NONE: usize = usize::MAX;
 const MOST_AT_ONCE: u64 = 200_000_000;
 
 /// From this number of multiplications per entry of the factor on, separators are sought: a block of 12 by 12 by 40
-/// hexahedra has 391 and 1.5 times the work of nested dissection, a plane of 1,000,000 unknowns 207 and 0.97 times, a slab
-/// of 60 by 60 by 3 nodes 180 and 0.68 times.
+/// nodes has 391 and 1.7 times the work of nested dissection, a plane of 980,000 unknowns 228 and 0.8 times, a slab of
+/// 60 by 60 by 3 nodes 180 and 0.8 times.
 const DEEP: u64 = 250;
 
 /// The unknown at each place of the elimination order, and the place of each unknown.
@@ -326,8 +326,8 @@ mod tests {
         }
     }
 
-    /// A cube of nodes, each joined to its 26 neighbours: half the entries and a third of the work of the order by
-    /// minimum degree, and the same order again.
+    /// A cube of nodes, each joined to its 26 neighbours: less than two thirds of the entries and half of the work of
+    /// the order by minimum degree, and the same order again.
     #[test]
     fn a_cube_is_dissected() {
         let side = 24_usize;

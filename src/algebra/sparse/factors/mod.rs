@@ -3,8 +3,8 @@
 //! | file | contents |
 //! |---|---|
 //! | `pattern` | the sparsity pattern of a matrix, found once |
-//! | `elimination_order` | the elimination order that keeps the factors sparse (AMD or nested dissection), and the size and work of a factor |
-//! | `nested_dissection` | the elimination order by separators |
+//! | `elimination_order` | the elimination order that keeps the factors sparse, and the size and work of a factor |
+//! | `nested_dissection` | an elimination order by separators, for large factors in space |
 //! | `bordered_matrix` | the assembled matrix |
 //! | `ldl`, `supernodal_ldl` | `K = L D Lᵀ`: small pivots raised, increments removed by borders; in pieces if large |
 //! | `cholesky` | whether a symmetric matrix is positive definite |

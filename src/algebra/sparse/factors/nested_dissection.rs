@@ -1,6 +1,6 @@
-//! An elimination order by nested dissection: separators split the graph of a matrix again and again, and each is eliminated
-//! after what it separates (A. George, SIAM J. Numer. Anal. 10 (1973) 345, doi:10.1137/0710032). In space it takes far less
-//! work than an order by minimum degree.
+//! An elimination order by nested dissection: separators split the graph of a matrix again and again, and each is
+//! eliminated after what it separates (A. George, SIAM J. Numer. Anal. 10 (1973) 345, doi:10.1137/0710032). In space it
+//! takes far less work than an order by minimum degree.
 //!
 //! The separators are those of `feral-scotch`, found on coarser and coarser graphs (F. Pellegrini, J. Roman, HPCN 1996,
 //! LNCS 1067, 493). Its random numbers begin with a fixed seed, so that the same pattern gives the same order.
@@ -9,13 +9,16 @@ use crate::resources::budget;
 use feral_scotch::{CscPattern, scotch_order};
 
 /// Bytes for each entry of the pattern: the graph, the graph without the unknowns that have the same neighbours, and the
-/// coarser graphs.
-const BYTES_AN_ENTRY: usize = 24;
+/// coarser graphs. Cubes and random graphs take 24 to 32.
+const BYTES_AN_ENTRY: usize = 32;
+/// Largest number of entries, which take some six seconds: the library cannot be cancelled. A cube of 510,000 unknowns
+/// has as many.
+const MOST_ENTRIES: usize = 40_000_000;
 
 /// The unknown at each place of the order and the place of each unknown, for a pattern of both triangles by columns.
-/// `None` where the pattern has more entries than the library counts.
+/// `None` where the pattern has more than [`MOST_ENTRIES`].
 pub(crate) fn order(starts: &[usize], rows: &[usize]) -> Option<(Vec<usize>, Vec<usize>)> {
-    let size = starts.len().checked_sub(1)?;
+    let size = starts.len().checked_sub(1).filter(|_| rows.len() <= MOST_ENTRIES)?;
     let narrow = |values: &[usize]| values.iter().map(|value| i32::try_from(*value).ok()).collect::<Option<Vec<i32>>>();
     let _held = budget::take::<u8>(rows.len().saturating_mul(BYTES_AN_ENTRY));
     budget::spend(rows.len());
