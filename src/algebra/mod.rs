@@ -9,6 +9,8 @@ pub mod plane_curve;
 pub(crate) mod scalar_root;
 pub mod sparse;
 
+use crate::algebra::sparse::preconditioned_refinement::Nearby;
+use crate::algebra::sparse::tolerances::ACCEPTED_BACKWARD_ERROR;
 use crate::resources::budget;
 pub use dense::dense_lu::{Factorisation, Stiffener};
 pub use dense::inertia::{Inertia, inertia};
@@ -46,6 +48,22 @@ impl SystemFactorisation {
             Self::Dense(dense) => dense.solve(right_hand_side),
             Self::Sparse(sparse) => sparse.solve(right_hand_side),
         }
+    }
+
+    /// Solves for consecutive right-hand sides, overwritten by the solutions; `false` when one has no result.
+    pub fn solve_all(&self, right_hand_sides: &mut [f64], size: usize) -> bool {
+        if let Self::Sparse(sparse) = self
+            && let Some(solutions) = Nearby::itself(sparse).solve_all(right_hand_sides, ACCEPTED_BACKWARD_ERROR)
+        {
+            right_hand_sides.copy_from_slice(&solutions);
+            return true;
+        }
+        right_hand_sides.chunks_exact_mut(size.max(1)).all(|right| {
+            let mut values = DVector::from_column_slice(right);
+            let is_solved = self.solve(&mut values);
+            right.copy_from_slice(values.as_slice());
+            is_solved
+        })
     }
 
     /// Solves like [`Self::solve`] but without checking the residual, for callers that check it themselves.

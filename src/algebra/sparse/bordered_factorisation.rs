@@ -152,6 +152,11 @@ impl SparseFactorisation {
         self.blocks.as_ref().is_some_and(|blocks| blocks.solve(values, count))
     }
 
+    /// The factorised matrix.
+    pub(super) fn matrix(&self) -> &Bordered {
+        &self.matrix
+    }
+
     /// Whether another matrix has the same unknowns and as many borders.
     pub(super) fn is_like(&self, matrix: &Bordered) -> bool {
         Arc::ptr_eq(&self.matrix.pattern, &matrix.pattern) && self.matrix.lower.len() == matrix.lower.len()

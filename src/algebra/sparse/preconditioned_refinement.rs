@@ -11,14 +11,17 @@ use crate::algebra::sparse::tolerances::{
     CONVERGED_BACKWARD_ERROR, EXTRAPOLATION_MARGIN, FIRST_CONTRACTION, STAGNATED_BACKWARD_ERROR,
 };
 use nalgebra::DVector;
+use std::borrow::Cow;
 
 /// Largest number of corrections of one solution.
 const MOST_CORRECTIONS: usize = 8;
+/// Number of right-hand sides solved for together: their vectors stay in cache from one round to the next.
+const TOGETHER: usize = 32;
 
 /// A matrix near a factorised matrix, with the last row of the factorised matrix.
 pub struct Nearby<'a> {
     factorisation: &'a SparseFactorisation,
-    matrix: Bordered,
+    matrix: Cow<'a, Bordered>,
 }
 
 impl<'a> Nearby<'a> {
@@ -29,12 +32,25 @@ impl<'a> Nearby<'a> {
             return None;
         }
         matrix.lower.last_mut()?.clone_from(factorisation.last_row()?);
-        Some(Self { factorisation, matrix })
+        Some(Self { factorisation, matrix: Cow::Owned(matrix) })
+    }
+
+    /// The factorised matrix itself.
+    pub fn itself(factorisation: &'a SparseFactorisation) -> Self {
+        Self { factorisation, matrix: Cow::Borrowed(factorisation.matrix()) }
     }
 
     /// Returns the solutions for consecutive right-hand sides, with backward errors up to `accepted`; `None` where the
     /// matrix is not near enough.
     pub fn solve_all(&self, right_hand_sides: &[f64], accepted: f64) -> Option<Vec<f64>> {
+        let mut solutions = Vec::with_capacity(right_hand_sides.len());
+        for rights in right_hand_sides.chunks(TOGETHER * self.matrix.size().max(1)) {
+            solutions.extend(self.solve_together(rights, accepted)?);
+        }
+        Some(solutions)
+    }
+
+    fn solve_together(&self, right_hand_sides: &[f64], accepted: f64) -> Option<Vec<f64>> {
         let (size, count) = (self.matrix.size(), right_hand_sides.len() / self.matrix.size());
         let mut solutions = right_hand_sides.to_vec();
         if !self.factorisation.solve_all_once(&mut solutions, count) {

@@ -14,7 +14,6 @@
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::dot as inner;
 use crate::mechanics::problem::contact_jacobian;
-use crate::mechanics::problem::equilibrium;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_contact_forces::reaction_in_space;
 use crate::mechanics::problem::state::{Rate, State, dot};
@@ -128,27 +127,34 @@ fn work_of_following_loads(loading: Loading<'_>, start: Placed<'_>, end: Placed<
 pub fn boundary_force(loading: Loading<'_>, at: Placed<'_>) -> (f64, f64) {
     let (state, rate) = at;
     let structure = loading.structure;
-    let mut force = vec![0.0; structure.freedoms()];
-    equilibrium::write_unbalanced(loading, state, &mut force);
-    let mut change = vec![0.0; structure.freedoms()];
-    structure.add_stiffness_times(&state.displacement, &rate.displacement, &mut change);
-    change.iter_mut().zip(&loading.pattern.forces).for_each(|(change, force)| *change -= rate.load * force);
+    let moved = &loading.pattern.supports;
+    let [mut force, mut change] = structure.forces_where_moved(&state.displacement, &rate.displacement, moved);
+    let is_moved = |node: &usize| structure.numbering.freedoms_of(*node).any(|freedom| moved[freedom] != 0.0);
     let (mut sum, mut sum_rate) = (0.0, 0.0);
     for (index, contact) in loading.contacts.iter().enumerate() {
         let (reaction, reaction_rate) = reaction_in_space(loading, index, at);
-        loading.each_column(index, state, |freedom, column| {
-            force[freedom] -= inner(column, &reaction);
-            change[freedom] -= inner(column, &reaction_rate);
-        });
-        contact_jacobian::each_curvature(structure, contact, &state.displacement, &reaction, |row, column, value| {
-            change[row] -= value * rate.displacement[column];
-        });
+        if contact.kinematics.nodes().iter().any(is_moved) {
+            loading.each_column(index, state, |freedom, column| {
+                force[freedom] -= inner(column, &reaction);
+                change[freedom] -= inner(column, &reaction_rate);
+            });
+            contact_jacobian::each_curvature(
+                structure,
+                contact,
+                &state.displacement,
+                &reaction,
+                |row, column, value| {
+                    change[row] -= value * rate.displacement[column];
+                },
+            );
+        }
         sum += inner(&reaction, &loading.pattern.shifts[index]);
         sum_rate += inner(&reaction_rate, &loading.pattern.shifts[index]);
     }
-    for (freedom, motion) in loading.pattern.supports.iter().enumerate() {
-        sum += force[freedom] * motion;
-        sum_rate += change[freedom] * motion;
+    for (freedom, motion) in moved.iter().enumerate().filter(|(_, motion)| **motion != 0.0) {
+        let (pattern, held) = (loading.pattern.forces[freedom], loading.held.forces[freedom]);
+        sum += (force[freedom] - (state.load * pattern + held)) * motion;
+        sum_rate += (change[freedom] - rate.load * pattern) * motion;
     }
     (sum, sum_rate)
 }

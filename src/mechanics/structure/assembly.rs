@@ -95,6 +95,11 @@ pub(super) fn size_of(element: &dyn FiniteElement, dimension: usize) -> usize {
 }
 
 impl<'a> ElementBlock<'a> {
+    /// Whether an element joins a degree of freedom of those asked for.
+    pub fn joins(&self, is_asked: impl Fn(usize) -> bool) -> bool {
+        self.freedoms.iter().any(|freedom| is_asked(*freedom))
+    }
+
     /// Calls `add` with the strain energy of each element.
     pub fn each_energy(self, displacement: &[f64], buffer: &mut ForceBuffer, add: impl FnMut(f64)) {
         let (own, energies) = buffer.of(self.freedoms, displacement, self.freedoms.len() / self.size);

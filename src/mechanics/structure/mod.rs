@@ -390,6 +390,19 @@ impl Structure {
         self.each_stiffness(displacement, &mut |row, column, value| forces[row] += value * motion[column]);
     }
 
+    /// `f_int(u)` and `K(u) v` over all degrees of freedom, `v` a motion of all of them, right where `moved` is not zero:
+    /// from the elements that join such a degree of freedom alone.
+    pub fn forces_where_moved(&self, displacement: &[f64], motion: &[f64], moved: &[f64]) -> [Vec<f64>; 2] {
+        let (mut forces, mut changes) = (vec![0.0; self.freedoms()], vec![0.0; self.freedoms()]);
+        let (mut of_forces, mut of_stiffness) = (ForceBuffer::default(), StiffnessBuffer::default());
+        for block in self.blocks().filter(|block| block.joins(|freedom| moved[freedom] != 0.0)) {
+            block.each_force(displacement, &mut of_forces, |freedom, value| forces[freedom] += value);
+            let mut add = |row: usize, column: usize, value: f64| changes[row] += value * motion[column];
+            block.each_stiffness(displacement, &mut of_stiffness, &mut add);
+        }
+        [forces, changes]
+    }
+
     /// Adds `K(u)` into the leading `unknowns x unknowns` block.
     pub fn add_tangent(&self, displacement: &[f64], matrix: &mut DMatrix<f64>) {
         self.each_stiffness(displacement, &mut |row, column, value| {

@@ -25,6 +25,39 @@ pub struct Bordered {
     pub(crate) is_outside: bool,
 }
 
+/// Number of vectors multiplied together.
+const SIDE_BY_SIDE: usize = 8;
+
+/// The product with several vectors, by the widest instructions of the machine: the sums are the same with any.
+struct Product<'a, const WITH_SIZES: bool> {
+    matrix: &'a Bordered,
+    rows: &'a [[f64; SIDE_BY_SIDE]],
+    sums: &'a mut [[f64; SIDE_BY_SIDE]],
+    of_terms: &'a mut [[f64; SIDE_BY_SIDE]],
+}
+
+impl<const WITH_SIZES: bool> pulp::NullaryFnOnce for Product<'_, WITH_SIZES> {
+    type Output = ();
+
+    // A function that is called rather than inlined would be compiled for the least of machines.
+    #[inline(always)]
+    fn call(self) {
+        let Self { matrix, rows, sums, of_terms } = self;
+        matrix.each_entry(&mut |row: usize, column: usize, entry: f64| {
+            let (values, sums) = (&rows[column], &mut sums[row]);
+            for number in 0..SIDE_BY_SIDE {
+                sums[number] += entry * values[number];
+            }
+            if WITH_SIZES {
+                let of_terms = &mut of_terms[row];
+                for number in 0..SIDE_BY_SIDE {
+                    of_terms[number] += (entry * values[number]).abs();
+                }
+            }
+        });
+    }
+}
+
 impl Bordered {
     /// The zero matrix with `borders` border rows and columns.
     pub fn new(pattern: Arc<Pattern>, borders: usize) -> Self {
@@ -175,7 +208,6 @@ impl Bordered {
     /// Computes `y = A x` for consecutive vectors: each entry, once read, serves several vectors. `sizes` remains
     /// unchanged without `WITH_SIZES`.
     pub(crate) fn multiply_all<const WITH_SIZES: bool>(&self, x: &[f64], y: &mut [f64], sizes: &mut [f64]) {
-        const SIDE_BY_SIDE: usize = 4;
         let size = self.size();
         let chunk = SIDE_BY_SIDE * size.max(1);
         for ((x, y), sizes) in x.chunks(chunk).zip(y.chunks_mut(chunk)).zip(sizes.chunks_mut(chunk)) {
@@ -184,13 +216,8 @@ impl Bordered {
                 rows.iter_mut().zip(x).for_each(|(row, value)| row[number] = *value);
             }
             let (mut sums, mut of_terms) = (vec![[0.0; SIDE_BY_SIDE]; size], vec![[0.0; SIDE_BY_SIDE]; size]);
-            self.each_entry(&mut |row, column, entry| {
-                let terms = rows[column].map(|value| entry * value);
-                sums[row].iter_mut().zip(&terms).for_each(|(sum, term)| *sum += term);
-                if WITH_SIZES {
-                    of_terms[row].iter_mut().zip(&terms).for_each(|(sum, term)| *sum += term.abs());
-                }
-            });
+            let product = Product::<WITH_SIZES> { matrix: self, rows: &rows, sums: &mut sums, of_terms: &mut of_terms };
+            pulp::Arch::new().dispatch(product);
             for (number, (y, sizes)) in y.chunks_exact_mut(size).zip(sizes.chunks_exact_mut(size)).enumerate() {
                 y.iter_mut().zip(&sums).for_each(|(value, row)| *value = row[number]);
                 if WITH_SIZES {
@@ -201,6 +228,7 @@ impl Bordered {
     }
 
     /// Calls `each` with row, column and value of each entry; entries at the same place add up.
+    #[inline(always)]
     fn each_entry(&self, each: &mut impl FnMut(usize, usize, f64)) {
         let n = self.pattern.size();
         for column in 0..n {

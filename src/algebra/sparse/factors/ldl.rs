@@ -7,6 +7,7 @@
 
 use crate::algebra::dense::inertia::{Inertia, inertia};
 use crate::algebra::sparse::factors::pattern::Pattern;
+use crate::algebra::sparse::factors::simultaneous_solves;
 use crate::algebra::sparse::factors::supernodal_ldl;
 use crate::algebra::sparse::factors::tolerances::{PIVOT_SUBSTITUTE, SMALLEST_PIVOT};
 use crate::resources::budget::{self, Taken};
@@ -231,6 +232,10 @@ impl SymmetricFactor {
         let size = self.pattern.size();
         if size == 0 || count == 0 {
             return true;
+        }
+        if count > 1 {
+            simultaneous_solves::solve(&self.pattern.symbolic, &self.values, &self.scales, right_hand_sides);
+            return right_hand_sides.iter().all(|value| value.is_finite());
         }
         let scale = |values: &mut [f64]| {
             for column in values.chunks_exact_mut(size) {

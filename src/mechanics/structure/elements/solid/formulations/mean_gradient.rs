@@ -112,10 +112,9 @@ impl<const N: usize, const D: usize> MeanGradient<N, D> {
         D * self.modes.len() + if self.hoop_length > 0.0 { 2 } else { 0 }
     }
 
-    /// The derivatives of `z` by the displacement of a node, row by row.
+    /// Writes the derivatives of `z` by the displacement of a node, row by row, in place of zeros.
     #[inline(always)]
-    fn slopes(&self, node: usize, inverse: &Tensor2, weights: &[f64; 4]) -> [[f64; D]; MOST_STRAINS] {
-        let mut slopes = [[0.0; D]; MOST_STRAINS];
+    fn write_slopes(&self, node: usize, inverse: &Tensor2, weights: &[f64; 4], slopes: &mut [[f64; D]; MOST_STRAINS]) {
         let modes = self.modes.len();
         for (rows, weight) in slopes.chunks_exact_mut(D).zip(&weights[..modes]) {
             rows.iter_mut().zip(inverse).for_each(|(row, inverse)| *row = from_fn(|axis| weight * inverse[axis]));
@@ -125,12 +124,13 @@ impl<const N: usize, const D: usize> MeanGradient<N, D> {
             slopes[D * modes][0] = self.hoop_length * (radial - hoop);
             slopes[D * modes + 1][0] = self.hoop_length * axial;
         }
-        slopes
     }
 
     /// The derivatives of `z` by the displacement of each node in the undeformed state.
     pub fn slopes_at_rest(&self, node: usize) -> [[f64; D]; MOST_STRAINS] {
-        self.slopes(node, &IDENTITY, &self.weights(node))
+        let mut slopes = [[0.0; D]; MOST_STRAINS];
+        self.write_slopes(node, &IDENTITY, &self.weights(node), &mut slopes);
+        slopes
     }
 
     /// The entries `Γ_ia` of a node.
@@ -223,7 +223,10 @@ impl<const N: usize, const D: usize> MeanGradient<N, D> {
     /// Adds the tangent in the blocks of nodes on and above the diagonal.
     fn add_own_stiffness(&self, of: &Inhomogeneity<N, D>, is_small: bool, stiffness: &mut [f64]) {
         let count = self.strains();
-        let slopes: [[[f64; D]; MOST_STRAINS]; N] = from_fn(|node| self.slopes(node, &of.inverse, &of.weights[node]));
+        let mut slopes = [[[0.0; D]; MOST_STRAINS]; N];
+        for (node, slopes) in slopes.iter_mut().enumerate() {
+            self.write_slopes(node, &of.inverse, &of.weights[node], slopes);
+        }
         let vectors = self.vectors(of);
         // `F̄⁻ᵀ ḡ_a`: the mean gradients in the deformed state.
         let deformed: [[f64; D]; N] =
@@ -263,7 +266,10 @@ impl<const N: usize, const D: usize> MeanGradient<N, D> {
     fn add_own_force_sizes(&self, motions: &Nodal<N, D>, sizes: &mut Nodal<N, D>) {
         let count = self.strains();
         let mut strains = [0.0; MOST_STRAINS];
-        let slopes: [[[f64; D]; MOST_STRAINS]; N] = from_fn(|node| self.slopes_at_rest(node));
+        let mut slopes = [[[0.0; D]; MOST_STRAINS]; N];
+        for (node, slopes) in slopes.iter_mut().enumerate() {
+            self.write_slopes(node, &IDENTITY, &self.weights(node), slopes);
+        }
         for (slopes, motion) in slopes.iter().zip(motions) {
             for (strain, slopes) in strains.iter_mut().zip(slopes) {
                 *strain += slopes.iter().zip(motion).map(|(slope, motion)| slope.abs() * motion).sum::<f64>();
