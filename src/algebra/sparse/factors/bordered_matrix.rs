@@ -41,20 +41,40 @@ impl<const WITH_SIZES: bool> pulp::NullaryFnOnce for Product<'_, WITH_SIZES> {
 
     // A function that is called rather than inlined would be compiled for the least of machines.
     #[inline(always)]
-    fn call(self) {
-        let Self { matrix, rows, sums, of_terms } = self;
-        matrix.each_entry(&mut |row: usize, column: usize, entry: f64| {
-            let (values, sums) = (&rows[column], &mut sums[row]);
+    fn call(mut self) {
+        let matrix = self.matrix;
+        let n = matrix.pattern.size();
+        for column in 0..n {
+            for place in matrix.pattern.column(column) {
+                self.add(matrix.pattern.rows[place], column, matrix.values[place]);
+            }
+        }
+        for (border, entries) in matrix.right.iter().enumerate() {
+            for (row, entry) in entries {
+                self.add(*row, n + border, *entry);
+            }
+        }
+        for (border, entries) in matrix.lower.iter().enumerate() {
+            for (column, entry) in entries {
+                self.add(n + border, *column, *entry);
+            }
+        }
+    }
+}
+
+impl<const WITH_SIZES: bool> Product<'_, WITH_SIZES> {
+    #[inline(always)]
+    fn add(&mut self, row: usize, column: usize, entry: f64) {
+        let (values, sums) = (&self.rows[column], &mut self.sums[row]);
+        for number in 0..SIDE_BY_SIDE {
+            sums[number] += entry * values[number];
+        }
+        if WITH_SIZES {
+            let of_terms = &mut self.of_terms[row];
             for number in 0..SIDE_BY_SIDE {
-                sums[number] += entry * values[number];
+                of_terms[number] += (entry * values[number]).abs();
             }
-            if WITH_SIZES {
-                let of_terms = &mut of_terms[row];
-                for number in 0..SIDE_BY_SIDE {
-                    of_terms[number] += (entry * values[number]).abs();
-                }
-            }
-        });
+        }
     }
 }
 
@@ -224,21 +244,6 @@ impl Bordered {
                     sizes.iter_mut().zip(&of_terms).for_each(|(value, row)| *value = row[number]);
                 }
             }
-        }
-    }
-
-    /// Calls `each` with row, column and value of each entry; entries at the same place add up.
-    #[inline(always)]
-    fn each_entry(&self, each: &mut impl FnMut(usize, usize, f64)) {
-        let n = self.pattern.size();
-        for column in 0..n {
-            self.pattern.column(column).for_each(|place| each(self.pattern.rows[place], column, self.values[place]));
-        }
-        for (border, entries) in self.right.iter().enumerate() {
-            entries.iter().for_each(|(row, value)| each(*row, n + border, *value));
-        }
-        for (border, entries) in self.lower.iter().enumerate() {
-            entries.iter().for_each(|(column, value)| each(n + border, *column, *value));
         }
     }
 
