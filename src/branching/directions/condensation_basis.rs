@@ -26,7 +26,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// Number of velocities up to which corrections of solutions by a factorisation nearby, two or three of each, take less
 /// than a factorisation of their own. The value affects only effort, and the result by no more than rounding.
-const MOST_NEARBY: usize = 16;
+const MOST_NEARBY: usize = 32;
 
 /// The velocities of all contacts that can change: the contact and the direction of each.
 fn velocities(changeable: &[Changeable]) -> impl Iterator<Item = (usize, &Vector)> {

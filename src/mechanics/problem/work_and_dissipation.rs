@@ -127,9 +127,11 @@ fn work_of_following_loads(loading: Loading<'_>, start: Placed<'_>, end: Placed<
 pub fn boundary_force(loading: Loading<'_>, at: Placed<'_>) -> (f64, f64) {
     let (state, rate) = at;
     let structure = loading.structure;
+    // No list where supports do not move.
     let moved = &loading.pattern.supports;
-    let [mut force, mut change] = structure.forces_where_moved(&state.displacement, &rate.displacement, moved);
-    let is_moved = |node: &usize| structure.numbering.freedoms_of(*node).any(|freedom| moved[freedom] != 0.0);
+    let moves = |freedom: usize| moved.get(freedom).is_some_and(|motion| *motion != 0.0);
+    let [mut force, mut change] = structure.forces_where(&state.displacement, &rate.displacement, moves);
+    let is_moved = |node: &usize| structure.numbering.freedoms_of(*node).any(moves);
     let (mut sum, mut sum_rate) = (0.0, 0.0);
     for (index, contact) in loading.contacts.iter().enumerate() {
         let (reaction, reaction_rate) = reaction_in_space(loading, index, at);
@@ -151,7 +153,7 @@ pub fn boundary_force(loading: Loading<'_>, at: Placed<'_>) -> (f64, f64) {
         sum += inner(&reaction, &loading.pattern.shifts[index]);
         sum_rate += inner(&reaction_rate, &loading.pattern.shifts[index]);
     }
-    for (freedom, motion) in moved.iter().enumerate().filter(|(_, motion)| **motion != 0.0) {
+    for (freedom, motion) in moved.iter().enumerate().filter(|(freedom, _)| moves(*freedom)) {
         let (pattern, held) = (loading.pattern.forces[freedom], loading.held.forces[freedom]);
         sum += (force[freedom] - (state.load * pattern + held)) * motion;
         sum_rate += (change[freedom] - rate.load * pattern) * motion;

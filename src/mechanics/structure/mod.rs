@@ -390,12 +390,17 @@ impl Structure {
         self.each_stiffness(displacement, &mut |row, column, value| forces[row] += value * motion[column]);
     }
 
-    /// `f_int(u)` and `K(u) v` over all degrees of freedom, `v` a motion of all of them, right where `moved` is not zero:
-    /// from the elements that join such a degree of freedom alone.
-    pub fn forces_where_moved(&self, displacement: &[f64], motion: &[f64], moved: &[f64]) -> [Vec<f64>; 2] {
+    /// `f_int(u)` and `K(u) v` over all degrees of freedom, `v` a motion of all of them, right at those asked for: from
+    /// the elements that join one of these alone.
+    pub fn forces_where(
+        &self,
+        displacement: &[f64],
+        motion: &[f64],
+        is_asked: impl Fn(usize) -> bool + Copy,
+    ) -> [Vec<f64>; 2] {
         let (mut forces, mut changes) = (vec![0.0; self.freedoms()], vec![0.0; self.freedoms()]);
         let (mut of_forces, mut of_stiffness) = (ForceBuffer::default(), StiffnessBuffer::default());
-        for block in self.blocks().filter(|block| block.joins(|freedom| moved[freedom] != 0.0)) {
+        for block in self.blocks().filter(|block| block.joins(is_asked)) {
             block.each_force(displacement, &mut of_forces, |freedom, value| forces[freedom] += value);
             let mut add = |row: usize, column: usize, value: f64| changes[row] += value * motion[column];
             block.each_stiffness(displacement, &mut of_stiffness, &mut add);
