@@ -198,7 +198,8 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
             }
             let once = self.factorise_or_reuse(at.error, work);
             self.solve(once)?;
-            self.judge_convergence()?;
+            let falls = progress.best_before.is_some_and(|least| at.error <= FIRST_CORRECTION_RATIO * least);
+            self.judge_convergence(falls)?;
             self.update(work);
         }
     }
@@ -351,12 +352,15 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
         Ok(())
     }
 
-    /// Gives up where the corrections do not decrease, and predicts the error that the last one leaves.
-    fn judge_convergence(&mut self) -> Result<(), Failure> {
+    /// Gives up where the corrections do not decrease, and predicts the error that the last one leaves. The first
+    /// correction may turn directions of slip, of which displacements show nothing until the second: there the residual
+    /// tells instead, whether it `falls`.
+    fn judge_convergence(&mut self, falls: bool) -> Result<(), Failure> {
         let (before, correction, reused) = (self.previous_correction, self.correction, self.factorisation.reused);
         let begins =
             self.iterations == 1 && self.system.may_be_shorter && self.system.loading.structure.layout().is_some();
-        if begins && !reused && correction > SMALL_ERROR && correction > FIRST_CORRECTION_RATIO * before {
+        let turns = self.system.has_tracks() && falls;
+        if begins && !turns && !reused && correction > SMALL_ERROR && correction > FIRST_CORRECTION_RATIO * before {
             return Err(Failure::NotConverged);
         }
         if !reused && correction > SMALL_ERROR && before.is_finite() && correction > RISING_CORRECTION_RATIO * before {
