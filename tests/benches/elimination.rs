@@ -4,9 +4,14 @@
 //! the library, which takes its analysis of the pattern over from the time before. Microseconds, the least of many; the
 //! largest error of a solution that is known is beside them.
 //!
-//! `cargo bench --bench elimination`, with numbers of unknowns `cargo bench --bench elimination -- 100 1000`
+//! With `solves`, solutions with the lattice's symmetric factors instead: 32 right-hand sides one after another by the
+//! library, and together.
+//!
+//! `cargo bench --bench elimination`, with numbers of unknowns `cargo bench --bench elimination -- 100 1000`, and
+//! `cargo bench --bench elimination -- solves`
 
 use arcslip::algebra::Sink;
+use arcslip::algebra::sparse::factors::ldl::SymmetricFactor;
 use arcslip::algebra::sparse::factors::pivoted_lu::GeneralLu;
 use arcslip::algebra::sparse::{Bordered, Holding, Holdings, IndexList, Pattern, SparseFactorisation};
 use faer::sparse::Triplet;
@@ -142,9 +147,46 @@ impl Found {
     }
 }
 
+/// Solutions with the symmetric factors of each lattice, one after another and together.
+fn solves(sizes: &[usize]) {
+    const TOGETHER: usize = 32;
+    println!("unknowns one by one    together       ratio  difference");
+    for size in sizes {
+        let system = System::new(*size);
+        let pattern = system.pattern();
+        let mut values = vec![0.0; pattern.entries()];
+        for (row, column, value) in &system.entries {
+            let place = pattern.place(*row, *column).filter(|_| row.max(column) < &system.unknowns);
+            place.into_iter().for_each(|place| values[place] += value);
+        }
+        let Ok(factor) = SymmetricFactor::new(pattern.clone(), &values) else { continue };
+        // As at contacts: a force at one unknown each.
+        let mut rights = vec![0.0; TOGETHER * system.unknowns];
+        for (number, right) in rights.chunks_exact_mut(system.unknowns).enumerate() {
+            right[number * system.unknowns / TOGETHER] = 1.0;
+        }
+        let (mut apart, mut joint) = (Found::default(), Found::default());
+        let began = Instant::now();
+        while began.elapsed().as_secs_f64() < SECONDS {
+            let (mut one_by_one, mut together) = (rights.clone(), rights.clone());
+            apart.take(|| one_by_one.chunks_exact_mut(system.unknowns).all(|one| factor.solve(one, 1)).then_some(0.0));
+            joint.take(|| factor.solve(&mut together, TOGETHER).then_some(0.0));
+            let pairs = one_by_one.iter().zip(&together);
+            let largest = one_by_one.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+            joint.error = pairs.fold(joint.error, |most, (a, b)| most.max((a - b).abs() / largest));
+        }
+        let ratio = apart.least / joint.least;
+        println!("{:8} {:10.1} {:11.1} {ratio:11.2} {:11.1e}", system.unknowns, apart.least, joint.least, joint.error);
+    }
+}
+
 fn main() {
     let asked: Vec<usize> = std::env::args().filter_map(|word| word.parse().ok()).collect();
     let sizes = if asked.is_empty() { SIZES.to_vec() } else { asked };
+    if std::env::args().any(|word| word == "solves") {
+        solves(&sizes);
+        return;
+    }
     println!("unknowns  borders    at nodes       error  in borders       error     library       error");
     for size in sizes {
         let system = System::new(size);

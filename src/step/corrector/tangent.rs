@@ -41,20 +41,31 @@ pub fn tangent_and_error(
         return None;
     }
     let rate = rate_recovery::direction_from(system, &iterate, &values)?;
-    let mut stiffness_across = Vec::new();
-    if system.has_tracks() {
-        let across = |(contact, role): (usize, &Role)| {
-            let Role::Plane { .. } = role else { return None };
-            values.fill(0.0);
-            values[system.row_of(contact) + 1] = 1.0;
-            factorisation.solve(&mut values).then(|| -values[system.column_of(contact) + 1])
-        };
-        stiffness_across = system.roles.iter().enumerate().map(across).collect();
-    }
+    let stiffness_across = stiffness_across_slips(system, &factorisation);
     let certain = factorisation.pivot_ratio() > UNCERTAIN_PIVOT_RATIO;
     let determinant = certain.then(|| factorisation.determinant_sign());
     *serving = may_serve(system, factorisation);
     Some(Tangent { rate, error, determinant, stiffness_across })
+}
+
+/// The stiffness of each contact across its slip, where that may turn; empty where no slip may.
+fn stiffness_across_slips(system: &ModeSystem<'_>, factorisation: &SystemFactorisation) -> Vec<Option<f64>> {
+    if !system.has_tracks() {
+        return Vec::new();
+    }
+    let in_planes = system.roles.iter().enumerate().filter(|(_, role)| matches!(role, Role::Plane { .. }));
+    let in_planes: Vec<usize> = in_planes.map(|(contact, _)| contact).collect();
+    let mut values = vec![0.0; in_planes.len() * system.size];
+    for (right, contact) in values.chunks_exact_mut(system.size).zip(&in_planes) {
+        right[system.row_of(*contact) + 1] = 1.0;
+    }
+    let mut stiffness = vec![None; system.roles.len()];
+    if factorisation.solve_all(&mut values, system.size) {
+        for (solution, contact) in values.chunks_exact(system.size).zip(in_planes) {
+            stiffness[contact] = Some(-solution[system.column_of(contact) + 1]);
+        }
+    }
+    stiffness
 }
 
 /// An estimate of a point's error by a factorisation nearby.

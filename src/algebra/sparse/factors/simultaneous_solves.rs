@@ -217,3 +217,46 @@ fn take(from: &mut Values, entry: f64, value: &Values) {
         from[lane] -= entry * value[lane];
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::algebra::sparse::Pattern;
+    use crate::algebra::sparse::factors::ldl::SymmetricFactor;
+    use std::sync::Arc;
+
+    /// Strips of nodes joined to their neighbours: of width 1 the factor has single columns, of width 30 blocks of many.
+    #[test]
+    fn right_hand_sides_together_have_the_solutions_that_each_has() {
+        for (width, length) in [(1, 40), (3, 25), (30, 40)] {
+            let place = |x: usize, y: usize| x * width + y;
+            let mut entries = Vec::new();
+            for (x, y) in (0..length).flat_map(|x| (0..width).map(move |y| (x, y))) {
+                let nexts = [(x + 1, y), (x, y + 1), (x + 1, y + 1)];
+                let inside = nexts.into_iter().filter(|(x, y)| *x < length && *y < width);
+                entries.extend(inside.map(|(a, b)| (place(x, y), place(a, b))));
+            }
+            let size = width * length;
+            let pattern = Arc::new(Pattern::new(size, entries).expect("a pattern"));
+            let mut values = vec![0.0; pattern.entries()];
+            for column in 0..size {
+                for at in pattern.column(column) {
+                    let is_own = pattern.rows[at] == column;
+                    // Some pivots are negative.
+                    values[at] = if is_own { 6.5 - (column % 5) as f64 * 2.9 } else { -1.0 };
+                }
+            }
+            let factor = SymmetricFactor::new(pattern, &values).expect("a factor");
+            for count in [2, 8, 19] {
+                let right = |at: usize| if at % 7 < 2 { (at % 11) as f64 - 4.0 } else { 0.0 };
+                let mut together: Vec<f64> = (0..size * count).map(right).collect();
+                let mut apart = together.clone();
+                assert!(factor.solve(&mut together, count));
+                assert!(apart.chunks_exact_mut(size).all(|one| factor.solve(one, 1)));
+                let largest = apart.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+                assert!(largest > 0.1);
+                let off = apart.iter().zip(&together).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+                assert!(off <= 1e-10 * largest, "{width} {count}: {off} of {largest}");
+            }
+        }
+    }
+}

@@ -40,9 +40,10 @@ const FEW_TOUCHING: usize = 3;
 const FEW_OF_MANY: usize = 4;
 /// Upper bound: the search, which may have to try every combination, is cut short where it takes too long.
 const MOST_OF_MANY: usize = 512;
-/// Number of contacts that can be searched as fast for each entry of a column of the factor. A block of 8,256 unknowns
-/// with up to 129 slipping contacts takes 12.0, 11.4 and 9.6 s with a third, one and four of them.
-const CONTACTS_AN_ENTRY: usize = 4;
+/// A proof takes a multiple of the squares of the entries of a column of the factor, the search one solve for each
+/// contact: so many contacts as this part of the square can be searched as fast. A block of 8,256 unknowns, with some 45
+/// entries and up to 129 slipping contacts, takes 12.0, 11.4 and 9.6 s with 15, 45 and 180.
+const CONTACTS_OF_SQUARE: usize = 10;
 /// Largest number of entries of the condensed equations (contacts that can change times the size of their columns).
 const MOST_CONDENSED: usize = 25_000_000;
 
@@ -106,7 +107,7 @@ pub(crate) fn are_few(loading: Loading<'_>, standings: &[Standing]) -> bool {
     let changing = standings.iter().filter(|standing| !matches!(standing, Standing::Settled(_))).count();
     let few = loading.structure.layout().map_or(FEW, |layout| {
         let entries_of_column = layout.pattern.factor_entries() / layout.pattern.size().max(1);
-        (entries_of_column * CONTACTS_AN_ENTRY).clamp(FEW_OF_MANY, MOST_OF_MANY)
+        (entries_of_column * entries_of_column / CONTACTS_OF_SQUARE).clamp(FEW_OF_MANY, MOST_OF_MANY)
     });
     changing <= few && touching <= FEW_TOUCHING
 }
