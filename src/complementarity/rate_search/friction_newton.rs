@@ -13,7 +13,7 @@
 //! strongly coupled, as those of a solid are.
 
 use crate::algebra::Factorisation;
-use crate::resources::budget;
+use crate::resources::budget::{self, Taken};
 use crate::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -54,6 +54,7 @@ pub(super) struct FrictionEquations {
     compliance: DMatrix<f64>,
     /// Each law with its `ρ`.
     laws: Vec<(Law, f64)>,
+    _held: Taken,
 }
 
 /// A projection with its derivative.
@@ -67,6 +68,8 @@ impl FrictionEquations {
     /// `None` where the stiffness is singular.
     pub fn new(stiffness: DMatrix<f64>, laws: Vec<Law>) -> Option<Self> {
         let size = stiffness.nrows();
+        // The stiffness, its inverse, and what the inversion works on.
+        let held = budget::take::<f64>(3 * size * size);
         budget::spend(size * size * size);
         let compliance = stiffness.clone().try_inverse()?;
         let own = |law: &Law| match law {
@@ -77,7 +80,7 @@ impl FrictionEquations {
         };
         let steps: Vec<f64> = laws.iter().map(|law| 1.0 / own(law)).collect();
         let laws: Vec<(Law, f64)> = laws.into_iter().zip(steps).collect();
-        laws.iter().all(|(_, step)| step.is_finite()).then_some(Self { stiffness, compliance, laws })
+        laws.iter().all(|(_, step)| step.is_finite()).then_some(Self { stiffness, compliance, laws, _held: held })
     }
 
     /// The velocities under a load, the reaction rates at rest, with what each law's contact does.
@@ -90,7 +93,7 @@ impl FrictionEquations {
                 let of = |(law, step): &(Law, f64)| law.projected(&reactions, &velocities, *step).behaviour;
                 return Some((velocities.clone(), self.laws.iter().map(of).collect()));
             }
-            self.iterate(&mut velocities, load);
+            self.iterate(&mut velocities, load, cancel);
         }
         None
     }
@@ -130,11 +133,14 @@ impl FrictionEquations {
         Some(false)
     }
 
-    /// Fixed-point iterations, with one `ρ` for all contacts.
-    fn iterate(&self, velocities: &mut DVector<f64>, load: &DVector<f64>) {
+    /// Fixed-point iterations, with one `ρ` for all contacts; fewer once cancelled.
+    fn iterate(&self, velocities: &mut DVector<f64>, load: &DVector<f64>, cancel: &CancelFlag) {
         let step = 1.0 / self.compliance.norm();
         let mut reactions = &self.stiffness * &*velocities + load;
         for _ in 0..ITERATIONS_BETWEEN {
+            if cancel.is_cancelled() {
+                return;
+            }
             budget::spend(self.compliance.len());
             let before = reactions.clone();
             for (law, _) in &self.laws {

@@ -7,6 +7,7 @@ use crate::branching::selection::selection_rule;
 use crate::continuation::increment::point_classification::{self, Arrival, Came};
 use crate::continuation::increment::stages;
 use crate::continuation::increment::step_control::{self, AcceptedStep};
+use crate::continuation::increment::tolerances::UNSTRESSED_MULTIPLE;
 use crate::continuation::path_state::motion::JumpCause;
 use crate::continuation::path_state::path_context::{Emitted, PathTrace};
 use crate::continuation::path_state::resumable_state::{Arriving, Phase};
@@ -89,7 +90,7 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
         point,
         options: arrival.options,
         taken: arrival.taken,
-        residual: reached.corrected.residual,
+        residual: residual_of_forces(trace, reached.corrected.residual, reached.corrected.force_scale),
         error_estimate: reached.error_estimate,
         mode_named: accepted.mode_named.map(|named| named && !arrival.unconfirmed),
         arriving: Some(arriving),
@@ -99,6 +100,14 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
     }
     trace.at.stage_over = stage_ends && trace.at.phase == Phase::Running;
     Some(row)
+}
+
+/// The residual over the force scale, or over what rounding makes of the structure's forces where these are no larger:
+/// of a motion without stress nothing but rounding is left.
+fn residual_of_forces(trace: &PathTrace<'_>, residual: f64, force_scale: f64) -> f64 {
+    let forces = trace.at.totals.force_scale.max(force_scale);
+    let none = UNSTRESSED_MULTIPLE * trace.structure.largest_rounding(&trace.at.here.state.displacement);
+    if forces < none { residual * forces / none } else { residual }
 }
 
 /// Classifies the point. `modes` are the modes that led to it, unless changes treated together have replaced them.
