@@ -50,7 +50,8 @@ impl SystemFactorisation {
         }
     }
 
-    /// Solves for consecutive right-hand sides, overwritten by the solutions; `false` when one has no result.
+    /// Solves for consecutive right-hand sides of `size` entries each, overwritten by the solutions; `false` when one has
+    /// no result.
     pub fn solve_all(&self, right_hand_sides: &mut [f64], size: usize) -> bool {
         if let Self::Sparse(sparse) = self
             && let Some(solutions) = Nearby::itself(sparse).solve_all(right_hand_sides, ACCEPTED_BACKWARD_ERROR)

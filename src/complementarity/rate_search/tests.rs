@@ -266,6 +266,22 @@ fn complementary_pivoting_finds_what_a_cut_search_misses() {
     assert!(beyond > 0 && beyond > before, "{beyond} beyond {before}");
 }
 
+/// Among thirty touching contacts a search cannot decide all combinations: it ends long before its effort is spent, and
+/// counts what is left.
+#[test]
+fn a_hopeless_search_ends_early() {
+    const MOST: u64 = 16_384;
+    let mut cut = 0;
+    for seed in 0..4 {
+        let mut random = Random::new(seed);
+        let problem = random_problem(&mut random, &[true; 30], Numbers::Stiffness(4.0));
+        let found = explore_without_pivoting(&problem, effort(MOST, &CancelFlag::default()));
+        assert!(found.unexplored == 0 || found.examined < MOST / 4, "{} {}", found.examined, found.unexplored);
+        cut += usize::from(found.unexplored > 0);
+    }
+    assert!(cut > 0);
+}
+
 /// Matrices that are definite except in one direction: most are solved without branching, and no ray is missed.
 #[test]
 fn one_pair_in_the_way_of_a_p_matrix_as_by_enumeration() {

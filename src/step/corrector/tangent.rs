@@ -8,6 +8,9 @@ use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, matrix, mode_
 use crate::mechanics::problem::state::Rate;
 use crate::step::corrector::tolerances::{REUSABLE_PIVOT_RATIO, UNCERTAIN_PIVOT_RATIO};
 
+/// Number of contacts whose stiffness is found together: no more memory than a factorisation takes, however many slip.
+const TOGETHER: usize = 32;
+
 /// The path's direction at a converged point, and an estimate of the point's error: the size of one more Newton
 /// correction across the path.
 ///
@@ -55,14 +58,16 @@ fn stiffness_across_slips(system: &ModeSystem<'_>, factorisation: &SystemFactori
     }
     let in_planes = system.roles.iter().enumerate().filter(|(_, role)| matches!(role, Role::Plane { .. }));
     let in_planes: Vec<usize> = in_planes.map(|(contact, _)| contact).collect();
-    let mut values = vec![0.0; in_planes.len() * system.size];
-    for (right, contact) in values.chunks_exact_mut(system.size).zip(&in_planes) {
-        right[system.row_of(*contact) + 1] = 1.0;
-    }
     let mut stiffness = vec![None; system.roles.len()];
-    if factorisation.solve_all(&mut values, system.size) {
-        for (solution, contact) in values.chunks_exact(system.size).zip(in_planes) {
-            stiffness[contact] = Some(-solution[system.column_of(contact) + 1]);
+    for contacts in in_planes.chunks(TOGETHER) {
+        let mut values = vec![0.0; contacts.len() * system.size];
+        for (right, contact) in values.chunks_exact_mut(system.size).zip(contacts) {
+            right[system.row_of(*contact) + 1] = 1.0;
+        }
+        if factorisation.solve_all(&mut values, system.size) {
+            for (solution, contact) in values.chunks_exact(system.size).zip(contacts) {
+                stiffness[*contact] = Some(-solution[system.column_of(*contact) + 1]);
+            }
         }
     }
     stiffness

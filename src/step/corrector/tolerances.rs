@@ -11,8 +11,9 @@ pub(crate) const RISING_CORRECTION_RATIO: f64 = 0.7;
 
 /// Largest ratio of the second correction to the first in a step that may be shortened, where a factorisation is most
 /// of the work: from farther away Newton's method need not converge (P. Deuflhard, Newton Methods for Nonlinear
-/// Problems, Springer 2011, section 5.1). The ratio affects effort only: a step with a larger ratio is repeated at a
-/// shorter length.
+/// Problems, Springer 2011, section 5.1). Where directions of slip turn, which displacements do not show at first, it is
+/// the ratio of the residuals instead. The ratio affects effort only: a step with a larger ratio is repeated at a shorter
+/// length.
 pub(crate) const FIRST_CORRECTION_RATIO: f64 = 0.25;
 
 /// Residual that an accepted point must have: of equilibrium, relative to the largest force, and of gaps and arc

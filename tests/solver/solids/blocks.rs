@@ -96,3 +96,26 @@ fn a_block_slips_at_coulombs_limit_in_space() {
         follow(&format!("{kind} {cells:?}"), &block(&mesh, &material, &json!({})));
     }
 }
+
+/// Between its slips the path of a cube is smooth: were steps refused because directions of slip turn within them, it would
+/// take 128 increments.
+#[test]
+fn steps_are_long_where_directions_of_slip_turn() {
+    let mesh = Mesh::new("hexahedron8", &[2, 2, 2], |point| point);
+    let mut model = mesh.model(json!({"kind": "neo_hookean", "young": 1e3, "poisson": 0.3}), &json!({}));
+    let top = mesh.side(2, true);
+    let moved = |by: [f64; 3]| top.iter().map(|node| (node.clone(), json!(by))).collect::<serde_json::Map<_, _>>();
+    model["supports"] = top.iter().map(|node| (node.clone(), json!(["x", "y", "z"]))).collect();
+    model["obstacles"] = json!({"floor": {"kind": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}});
+    let contact = |node: String| json!({"node": node, "obstacle": "floor", "friction": 0.5});
+    model["contacts"] = mesh.side(2, false).into_iter().map(contact).collect();
+    model["stages"] = json!([
+        {"name": "press", "displacements": moved([0.0, 0.0, -0.02]), "until": {"load_above": 1}},
+        {"name": "push", "displacements": moved([0.06, 0.0, 0.0]), "until": {"load_above": 1}}
+    ]);
+    let (increments, report) = trace(&request(&json!({"model": model}).to_string()));
+    assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{report:?}");
+    let slips = |increment: &Increment| increment.contacts.iter().any(|contact| contact.status == Status::Slip);
+    assert!(increments.iter().any(slips));
+    assert!(increments.len() < 40, "{}", increments.len());
+}

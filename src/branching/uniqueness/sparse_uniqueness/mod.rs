@@ -38,7 +38,8 @@ const FEW_TOUCHING: usize = 3;
 /// Lower bound of this number with sparse matrices: each contact that can change takes one more solve, which is cheaper
 /// relative to the factorisations of a proof the longer the factor's columns are.
 const FEW_OF_MANY: usize = 4;
-/// Upper bound: the search, which may have to try every combination, is cut short where it takes too long.
+/// Upper bound: up to here dense matrices of the contacts take less time than the factorisations of large structures. The
+/// search, which may have to try every combination, is cut short where it takes too long.
 const MOST_OF_MANY: usize = 512;
 /// A proof takes a multiple of the squares of the entries of a column of the factor, the search one solve for each
 /// contact: so many contacts as this part of the square can be searched as fast. A block of 8,256 unknowns, with some 45
