@@ -149,7 +149,12 @@ mod tests {
     /// guess.
     #[test]
     fn a_step_is_foreseen_to_fourth_order() {
-        let state = |angle: f64| State { displacement: vec![angle.cos()], load: angle.sin(), reactions: Vec::new() };
+        let state = |angle: f64| State {
+            displacement: vec![angle.cos()],
+            remainder: Vec::new(),
+            load: angle.sin(),
+            reactions: Vec::new(),
+        };
         let rate = |angle: f64| Rate { displacement: vec![-angle.sin()], load: angle.cos(), reactions: Vec::new() };
         let error = |step: f64| {
             let before = PlacedPoint::before(state(-step), rate(-step), &state(0.0)).expect("a point before");

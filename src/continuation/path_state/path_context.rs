@@ -304,7 +304,7 @@ impl<'a> PathTrace<'a> {
 
     /// The present state as recorded to detect a cycle: free contacts have no reaction and are omitted.
     pub(crate) fn visit(&self) -> Visited {
-        let State { displacement, load, reactions } = &self.at.here.state;
+        let State { displacement, load, reactions, .. } = &self.at.here.state;
         let held = self.at.near.iter().zip(&self.at.here.modes).zip(reactions);
         let held = held.filter(|((_, mode), _)| mode.is_active());
         let held = held.map(|((contact, mode), reaction)| ClosedContact {

@@ -89,7 +89,8 @@ pub(super) fn place_exactly(system: &ModeSystem<'_>, state: &mut State) {
         let shift = scaled(&system.loading.pattern.shifts[contact], state.load - system.anchor.load);
         for (freedom, shift) in structure.translations_of(node).zip(shift) {
             if structure.unknown_of[freedom].is_some() {
-                state.displacement[freedom] = system.anchor.displacement[freedom] + shift;
+                let kept = system.anchor.remainder.get(freedom).copied().unwrap_or(0.0);
+                state.place(freedom, system.anchor.displacement[freedom], kept + shift);
             }
         }
     }

@@ -50,7 +50,7 @@ impl End {
     pub fn make_exact(self, state: &mut State) {
         match self {
             Self::Load { bound, .. } => state.load = bound,
-            Self::Displacement { freedom, bound, .. } => state.displacement[freedom] = bound,
+            Self::Displacement { freedom, bound, .. } => state.place(freedom, bound, 0.0),
             Self::LimitPoints(_) | Self::ContactChanges(_) | Self::Increments(_) => {}
         }
     }

@@ -24,7 +24,7 @@ pub struct ForceSizes {
 
 /// Writes `f_int(u) - s p - h` over all degrees of freedom: the out-of-balance force `G` without contacts.
 pub fn write_unbalanced(loading: Loading<'_>, state: &State, force: &mut [f64]) -> ForceSizes {
-    let carried = loading.structure.internal_force(&state.displacement, force);
+    let carried = loading.structure.internal_force_beyond(&state.displacement, &state.remainder, force);
     let mut sizes = ForceSizes { carried, applied: 0.0, internal: 0.0 };
     let loads = loading.pattern.forces.iter().zip(&loading.held.forces);
     for (value, (pattern, held)) in force.iter_mut().zip(loads) {

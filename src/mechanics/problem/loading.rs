@@ -1,6 +1,6 @@
 //! The structure under a load pattern and the constant loads of earlier stages.
 
-use crate::mechanics::contact::vector::{Vector, add, scaled};
+use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
 use crate::mechanics::contact::{ContactPair, Frame, Reaction};
 use crate::mechanics::problem::contact_jacobian;
 use crate::mechanics::problem::node_contact_forces::Corner;
@@ -109,7 +109,17 @@ impl Loading<'_> {
     /// Gap, normal and tangents of a contact.
     #[inline(always)]
     pub fn frame(&self, contact: usize, state: &State) -> Frame {
-        self.contacts[contact].frame(&self.relative(contact, state))
+        let mut frame = self.contacts[contact].frame(&self.relative(contact, state));
+        if let Some(beyond) = self.beyond_rounding(contact, state) {
+            frame.gap += dot(&frame.normal, &beyond);
+        }
+        frame
+    }
+
+    /// What the rounding of a node's displacement left, where the state keeps it.
+    fn beyond_rounding(&self, contact: usize, state: &State) -> Option<Vector> {
+        let node = self.contacts[contact].kinematics.node().filter(|_| !state.remainder.is_empty())?;
+        Some(self.structure.translation_at(node, &state.remainder))
     }
 
     /// The reaction (or its rate) by which a contact carries a force on its node; with a tangential part only with
@@ -127,6 +137,9 @@ impl Loading<'_> {
     #[inline(always)]
     pub fn gap(&self, contact: usize, state: &State) -> f64 {
         let is_pressed = || state.reactions.get(contact).is_some_and(|reaction| reaction.normal > 0.0);
+        if self.beyond_rounding(contact, state).is_some() {
+            return self.frame(contact, state).gap;
+        }
         if self.contacts[contact].kinematics.node().is_some() || is_pressed() {
             return self.contacts[contact].gap(&self.relative(contact, state));
         }
@@ -176,7 +189,7 @@ impl Loading<'_> {
     pub fn place_supports(&self, state: &mut State) {
         for (freedom, (held, pattern)) in self.held.supports.iter().zip(&self.pattern.supports).enumerate() {
             if self.structure.unknown_of[freedom].is_none() {
-                state.displacement[freedom] = held + state.load * pattern;
+                state.place(freedom, *held, state.load * pattern);
             }
         }
     }

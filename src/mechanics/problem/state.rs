@@ -8,6 +8,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
     pub displacement: Vec<f64>,
+    /// What the rounding of each displacement leaves: the displacement is the sum of both. Empty where the structure is
+    /// too soft for it to matter: see [`Structure::keeps_remainders`].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub remainder: Vec<f64>,
     pub load: f64,
     pub reactions: Vec<Reaction>,
 }
@@ -24,8 +28,18 @@ impl State {
     pub fn at_rest(structure: &Structure, contacts: usize) -> Self {
         Self {
             displacement: vec![0.0; structure.freedoms()],
+            remainder: if structure.keeps_remainders() { vec![0.0; structure.freedoms()] } else { Vec::new() },
             load: 0.0,
             reactions: vec![Reaction::default(); contacts],
+        }
+    }
+
+    /// Sets a displacement to the sum of two numbers.
+    pub fn place(&mut self, freedom: usize, value: f64, change: f64) {
+        let (sum, left) = sum_and_remainder(value, change);
+        self.displacement[freedom] = sum;
+        if let Some(remainder) = self.remainder.get_mut(freedom) {
+            *remainder = left;
         }
     }
 
@@ -38,8 +52,16 @@ impl State {
 
     /// Advances the state by a straight step along a rate.
     pub fn advance(&mut self, rate: &Rate, step: f64) {
-        for (value, rate) in self.displacement.iter_mut().zip(&rate.displacement) {
-            *value += step * rate;
+        if self.remainder.is_empty() {
+            for (value, rate) in self.displacement.iter_mut().zip(&rate.displacement) {
+                *value += step * rate;
+            }
+        } else {
+            let values = self.displacement.iter_mut().zip(&mut self.remainder);
+            for ((value, remainder), rate) in values.zip(&rate.displacement) {
+                let (sum, left) = sum_and_remainder(*value, step * rate);
+                (*value, *remainder) = sum_and_remainder(sum, left + *remainder);
+            }
         }
         self.load += step * rate.load;
         for (reaction, rate) in self.reactions.iter_mut().zip(&rate.reactions) {
@@ -50,6 +72,7 @@ impl State {
     /// Copies another state, without new memory where both are of one structure.
     pub fn set_to(&mut self, other: &Self) {
         self.displacement.clone_from(&other.displacement);
+        self.remainder.clone_from(&other.remainder);
         self.load = other.load;
         self.reactions.clone_from(&other.reactions);
     }
@@ -150,4 +173,76 @@ impl Rate {
 /// `a·b`
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// The rounded sum of two numbers, and what its rounding left: together exactly the sum (D. E. Knuth, The Art of Computer
+/// Programming, vol. 2, 3rd ed., section 4.2.2, theorem B).
+fn sum_and_remainder(first: f64, second: f64) -> (f64, f64) {
+    let sum = first + second;
+    let of_second = sum - first;
+    let of_first = sum - of_second;
+    (sum, (first - of_first) + (second - of_second))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::structure::element_list::ElementList;
+    use crate::mechanics::structure::elements::beam::Beam;
+    use crate::mechanics::structure::elements::beam::segment::SectionStiffness;
+
+    const ELEMENTS: usize = 1_000;
+
+    /// A beam of unit length of many elements, clamped at its start.
+    fn beam_of_short_elements() -> Structure {
+        let section = SectionStiffness { axial: 1e4, bending: 1.0, shear: None };
+        let chord = [1.0 / ELEMENTS as f64, 0.0];
+        let elements = (0..ELEMENTS).map(|place| Beam::straight([place, place + 1], chord, section));
+        Structure::new(2, ELEMENTS + 1, &[(0, 0), (0, 1), (0, 2)], elements.collect::<ElementList>())
+    }
+
+    #[test]
+    fn a_sum_and_its_remainder_are_exact() {
+        let (sum, left) = sum_and_remainder(1.0, 2.0_f64.powi(-60));
+        assert_eq!((sum, left), (1.0, 2.0_f64.powi(-60)));
+        let (sum, left) = sum_and_remainder(-1e-3, 1.0 / 3.0);
+        assert_eq!(((sum - 1.0 / 3.0) + 1e-3) + left, 0.0);
+    }
+
+    /// Ten thousand steps of a thousandth of the rounding of the displacement move a state that keeps remainders.
+    #[test]
+    fn short_steps_are_not_lost() {
+        let structure = beam_of_short_elements();
+        assert!(structure.keeps_remainders());
+        let mut state = State::at_rest(&structure, 0);
+        let mut rate = Rate { displacement: vec![0.0; structure.freedoms()], load: 0.0, reactions: Vec::new() };
+        let tip = structure.translations_of(ELEMENTS).start;
+        state.place(tip, 1.0, 0.0);
+        rate.displacement[tip] = 1.0;
+        let step = 2.0_f64.powi(-63);
+        (0..10_000).for_each(|_| state.advance(&rate, step));
+        assert_eq!((state.displacement[tip] - 1.0) + state.remainder[tip], 10_000.0 * step);
+    }
+
+    /// Remainders change the forces by `K r`, although they are lost in the sums `u + r`; without them the rounding of
+    /// displacements would change the forces by `ε |K| |u|`.
+    #[test]
+    fn remainders_change_forces_by_the_stiffness() {
+        let structure = beam_of_short_elements();
+        let count = structure.freedoms();
+        let displacement: Vec<f64> = (0..count).map(|k| if k % 3 == 1 { 0.4 + 1e-4 * k as f64 } else { 0.0 }).collect();
+        let is_translation = |freedom: usize| freedom % 3 < 2;
+        let remainder: Vec<f64> =
+            (0..count).map(|k| if is_translation(k) { 1e-18 * (0.3 * k as f64).sin() } else { 0.0 }).collect();
+        assert!(displacement.iter().zip(&remainder).all(|(u, r)| *u == 0.0 || u + r == *u));
+        let (mut without, mut with) = (vec![0.0; count], vec![0.0; count]);
+        structure.internal_force_beyond(&displacement, &vec![0.0; count], &mut without);
+        structure.internal_force_beyond(&displacement, &remainder, &mut with);
+        let mut expected = vec![0.0; count];
+        structure.each_stiffness(&displacement, &mut |row, column, value| expected[row] += value * remainder[column]);
+        let largest = expected.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        let rounding = structure.rounding(&displacement).into_iter().fold(0.0, f64::max);
+        let off = (0..count).map(|k| (with[k] - without[k] - expected[k]).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-3 * largest && off < 1e-4 * rounding, "{off:e} of {largest:e}; rounding {rounding:e}");
+    }
 }

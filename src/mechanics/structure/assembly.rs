@@ -59,10 +59,20 @@ impl<const ENTRIES: usize> BlockBuffer<ENTRIES> {
     /// The displacements of a block, and room for so many numbers.
     #[inline(always)]
     fn of(&mut self, freedoms: &[usize], displacement: &[f64], count: usize) -> (&[f64], &mut [f64]) {
-        let gathered = freedoms.iter().map(|freedom| displacement[*freedom]);
-        if freedoms.len() <= self.few.0.len() && count <= ENTRIES {
+        self.filled_with(freedoms.iter().map(|freedom| displacement[*freedom]), freedoms.len(), count)
+    }
+
+    /// These displacements, so many, and room for so many numbers.
+    #[inline(always)]
+    fn filled_with(
+        &mut self,
+        gathered: impl Iterator<Item = f64>,
+        freedoms: usize,
+        count: usize,
+    ) -> (&[f64], &mut [f64]) {
+        if freedoms <= self.few.0.len() && count <= ENTRIES {
             self.few.0.iter_mut().zip(gathered).for_each(|(own, value)| *own = value);
-            return (&self.few.0[..freedoms.len()], &mut self.few.1[..count]);
+            return (&self.few.0[..freedoms], &mut self.few.1[..count]);
         }
         self.many.0.clear();
         self.many.0.extend(gathered);
@@ -111,6 +121,38 @@ impl<'a> ElementBlock<'a> {
     #[inline(always)]
     pub fn each_force(self, displacement: &[f64], buffer: &mut ForceBuffer, mut add: impl FnMut(usize, f64)) -> f64 {
         let (own, forces) = buffer.of(self.freedoms, displacement, self.freedoms.len());
+        let carried = self.run.write_forces(self.first, self.size, own, forces);
+        self.freedoms.iter().zip(forces).for_each(|(freedom, value)| add(*freedom, *value));
+        carried
+    }
+
+    /// Whether the forces depend on the positions of the nodes relative to each other alone.
+    pub fn is_of_relative_positions(&self) -> bool {
+        self.run.element(self.first).is_of_relative_positions()
+    }
+
+    /// As [`each_force`](Self::each_force), at displacements with what their rounding left. The displacements of an
+    /// element's nodes are taken relative to its first one: their differences have more digits than they have themselves.
+    pub fn each_force_beyond(
+        self,
+        dimension: usize,
+        displacement: &[f64],
+        remainder: &[f64],
+        buffer: &mut ForceBuffer,
+        mut add: impl FnMut(usize, f64),
+    ) -> f64 {
+        let of_node = self.size / self.run.element(self.first).nodes().len();
+        let relative = self.freedoms.chunks_exact(self.size).flat_map(|own| {
+            own.iter().enumerate().map(move |(place, freedom)| {
+                let component = place % of_node;
+                if component >= dimension {
+                    return displacement[*freedom];
+                }
+                let first = own[component];
+                (displacement[*freedom] - displacement[first]) + (remainder[*freedom] - remainder[first])
+            })
+        });
+        let (own, forces) = buffer.filled_with(relative, self.freedoms.len(), self.freedoms.len());
         let carried = self.run.write_forces(self.first, self.size, own, forces);
         self.freedoms.iter().zip(forces).for_each(|(freedom, value)| add(*freedom, *value));
         carried

@@ -35,6 +35,10 @@ use turning_nodes::TurningNodes;
 /// Largest number of unknowns for which matrices are dense.
 pub const MOST_DENSE: usize = 16;
 
+/// Force (dimensionless) by which the rounding of displacements of one may be off, up to which this rounding is of no
+/// account: the residual that is attainable without stiff parts.
+const ROUNDING_THAT_MATTERS: f64 = 1e-10;
+
 /// Largest number of unknowns for which null spaces and eigenvalues are computed, in dense matrices: beyond it, smooth
 /// bifurcation points and directions at singular points are not sought.
 pub const MOST_ANALYSED: usize = 3_000;
@@ -293,11 +297,29 @@ impl Structure {
 
     /// Writes `f_int(u)` over all degrees of freedom and returns the largest force that any element carries.
     pub fn internal_force(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
+        self.internal_force_beyond(displacement, &[], force)
+    }
+
+    /// As [`internal_force`](Self::internal_force), at displacements with what their rounding left; no `remainder` stands
+    /// for none.
+    pub fn internal_force_beyond(&self, displacement: &[f64], remainder: &[f64], force: &mut [f64]) -> f64 {
         force.fill(0.0);
         let mut buffer = ForceBuffer::default();
+        let mut add = |freedom: usize, value: f64| force[freedom] += value;
         self.blocks().fold(0.0, |largest: f64, block| {
-            largest.max(block.each_force(displacement, &mut buffer, |freedom, value| force[freedom] += value))
+            largest.max(if remainder.is_empty() || !block.is_of_relative_positions() {
+                block.each_force(displacement, &mut buffer, &mut add)
+            } else {
+                block.each_force_beyond(self.dimension, displacement, remainder, &mut buffer, &mut add)
+            })
         })
+    }
+
+    /// Whether the rounding of displacements is no small force, so that a state keeps what it leaves
+    /// ([`State::remainder`](crate::mechanics::problem::state::State::remainder)): without it no state of a beam of many
+    /// short elements is in equilibrium.
+    pub fn keeps_remainders(&self) -> bool {
+        f64::EPSILON * self.largest_stiffness > ROUNDING_THAT_MATTERS
     }
 
     /// Writes `f_int(u)` over all degrees of freedom with moments in global axes in space, where otherwise they are

@@ -5,7 +5,7 @@
 use crate::branching::bifurcation::locate::singular_point::LocatedSingularity;
 use crate::continuation::critical_curve::history::contact_history::PointGuess;
 use crate::continuation::critical_curve::history::tolerances::{
-    ACCEPTED_CORRECTION, LARGEST_CORRECTION, POINT_ROUND_OFF, SAME_BRANCH, UNFOLDED,
+    ACCEPTED_CORRECTION, LARGEST_CORRECTION, POINT_ROUND_OFF, ROUNDED_VALUE, SAME_BRANCH, UNFOLDED,
 };
 use crate::mechanics::contact::Mode;
 use crate::mechanics::equations::ModeSystem;
@@ -64,7 +64,8 @@ impl ModeBranch<'_> {
                 (value(&beside) - at) / DIFFERENCE
             }
         };
-        let (mut best, mut least) = (here.clone(), f64::INFINITY);
+        let (mut best, mut least, mut left) = (here.clone(), f64::INFINITY, f64::INFINITY);
+        let is_found = |least: f64, left: f64| least <= ACCEPTED_CORRECTION * size || left <= ROUNDED_VALUE;
         for _ in 0..MOST_ITERATIONS {
             let step = (-at / slope).clamp(-LARGEST_CORRECTION * size, LARGEST_CORRECTION * size);
             if !step.is_finite() {
@@ -73,23 +74,23 @@ impl ModeBranch<'_> {
             if step.abs() <= POINT_ROUND_OFF * size {
                 return Some(here);
             }
-            if step.abs() >= 0.5 * least && least <= ACCEPTED_CORRECTION * size {
+            if step.abs() >= 0.5 * least && is_found(least, left) {
                 // What remains is round-off.
                 return Some(best);
             }
             if step.abs() < least {
-                (least, best) = (step.abs(), here.clone());
+                (least, left, best) = (step.abs(), at.abs(), here.clone());
             }
             let next = self.advanced(&here, step, work)?;
             let found = value(&next);
             slope = match event.slope(self.loading, self.modes, &next.state, &next.rate) {
                 Some(slope) => slope,
-                None if found == at => return (least <= ACCEPTED_CORRECTION * size).then_some(best),
+                None if found == at => return is_found(least, left).then_some(best),
                 None => (found - at) / step,
             };
             (here, at) = (next, found);
         }
-        (least <= ACCEPTED_CORRECTION * size).then_some(best)
+        is_found(least, left).then_some(best)
     }
 
     /// The point at which another branch crosses this one, near a guess. Where the branches pass each other it is the point

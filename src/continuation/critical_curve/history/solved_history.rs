@@ -101,6 +101,9 @@ impl StateScales {
         for node in 0..scene.structure.numbering.nodes() {
             for freedom in scene.structure.translations_of(node) {
                 state.displacement[freedom] *= length;
+                if let Some(remainder) = state.remainder.get_mut(freedom) {
+                    *remainder *= length;
+                }
             }
         }
         state.load *= self.loads[stage] / other.loads[stage];

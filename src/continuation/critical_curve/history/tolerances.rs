@@ -17,6 +17,11 @@ pub(crate) const POINT_ROUND_OFF: f64 = 1e-14;
 /// rate has an error of 1e-14, the place of the maximum has one of 1e-14 over the curvature of the path.
 pub(crate) const ACCEPTED_CORRECTION: f64 = 1e-10;
 
+/// Value of a quantity (gaps and reactions over their scales, rates of unit arc length) that may be rounding where
+/// corrections no longer become smaller: the rates of slender beams have an error of some 3e-11 times a unit. It is the
+/// largest violation of the laws of contact at a point.
+pub(crate) const ROUNDED_VALUE: f64 = 1e-10;
+
 /// Largest correction along a branch in one iteration, relative to the size of the state and of its increment.
 pub(crate) const LARGEST_CORRECTION: f64 = 0.2;
 

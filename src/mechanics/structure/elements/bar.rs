@@ -124,6 +124,10 @@ impl FiniteElement for Bar {
         &self.nodes
     }
 
+    fn is_of_relative_positions(&self) -> bool {
+        true
+    }
+
     #[inline(always)]
     fn energy(&self, displacement: &[f64]) -> f64 {
         let elongation = self.deformed(displacement).elongation;

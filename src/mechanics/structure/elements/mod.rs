@@ -88,6 +88,11 @@ pub trait FiniteElement: Debug + Send + Sync {
         false
     }
 
+    /// Whether the forces depend on the positions of the nodes relative to each other and on rotations alone.
+    fn is_of_relative_positions(&self) -> bool {
+        false
+    }
+
     /// Whether the nodal forces are linear in the displacements.
     fn is_linear(&self) -> bool {
         false

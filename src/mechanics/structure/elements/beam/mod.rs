@@ -155,6 +155,10 @@ impl FiniteElement for Beam {
         &self.nodes
     }
 
+    fn is_of_relative_positions(&self) -> bool {
+        true
+    }
+
     fn rotations(&self) -> usize {
         1
     }

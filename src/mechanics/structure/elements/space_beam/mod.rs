@@ -165,6 +165,10 @@ impl FiniteElement for SpaceBeam {
         &self.nodes
     }
 
+    fn is_of_relative_positions(&self) -> bool {
+        true
+    }
+
     fn rotations(&self) -> usize {
         3
     }
