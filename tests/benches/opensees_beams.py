@@ -76,7 +76,7 @@ def by_arcslip(program, kind, elements):
         done = subprocess.run([program, "solve", file.name, "--out", os.devnull, "--format", "ndjson"],
                               capture_output=True, text=True)
         spent = processor_time_of_children() - before
-    report = json.loads(done.stderr[done.stderr.index("{"):])
+    report = json.loads(done.stderr[done.stderr.index('{"stop_reason"'):])
     return spent * 1e3 / report["increments"], report["increments"], report["stop_reason"]
 
 

@@ -6,7 +6,9 @@ use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;
 use crate::algebra::sparse::factors::static_pivot_lu::UnsymmetricFactor;
 use nalgebra::{DMatrix, Dyn, LU};
+use pulp::{Arch, NullaryFnOnce};
 use smallvec::smallvec;
+use std::ops::Range;
 
 /// Factors of `K` with some diagonal entries raised.
 pub(super) enum Factor {
@@ -118,6 +120,8 @@ impl Terms {
 const TOGETHER: usize = 32;
 /// Number of rows processed together: this many rows of a few columns stay in cache.
 const ROWS_TOGETHER: usize = 512;
+/// Number of columns of `K⁻¹ B` that are subtracted at once.
+const AT_ONCE: usize = 4;
 /// Largest number of entries of `K⁻¹ B` that are stored.
 const KEPT: usize = 4_000_000;
 
@@ -219,17 +223,54 @@ impl BorderSchurComplement {
     }
 
     /// Subtracts `K⁻¹ B` times the weights from each solution, a few rows at a time: each part of `K⁻¹ B`, once read,
-    /// serves all solutions.
+    /// serves all solutions. The widest instructions of the machine compute the same bits as any others, as no operations
+    /// are fused.
     fn take_responses(&self, responses: &[f64], weights: &DMatrix<f64>, upper: &mut [f64]) {
-        let size = self.size.max(1);
-        for first in (0..self.size).step_by(ROWS_TOGETHER) {
-            let rows = first..self.size.min(first + ROWS_TOGETHER);
-            for (upper, weights) in upper.chunks_exact_mut(size).zip(weights.column_iter()) {
-                let upper = &mut upper[rows.clone()];
-                for (response, weight) in responses.chunks_exact(size).zip(weights.iter()) {
-                    let response = &response[rows.clone()];
-                    upper.iter_mut().zip(response).for_each(|(value, response)| *value -= weight * response);
-                }
+        Arch::new().dispatch(TakenResponses { size: self.size.max(1), responses, weights, upper });
+    }
+}
+
+/// Solutions and the multiples of vectors of this size that are subtracted from them; one column of weights a solution.
+struct TakenResponses<'a> {
+    size: usize,
+    responses: &'a [f64],
+    weights: &'a DMatrix<f64>,
+    upper: &'a mut [f64],
+}
+
+impl NullaryFnOnce for TakenResponses<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { size, responses, weights, upper } = self;
+        let borders = weights.nrows();
+        for first in (0..size).step_by(ROWS_TOGETHER) {
+            let rows = first..size.min(first + ROWS_TOGETHER);
+            for (number, solution) in upper.chunks_exact_mut(size).enumerate() {
+                let weights = &weights.as_slice()[number * borders..][..borders];
+                take_multiples(&mut solution[rows.clone()], (responses, size, rows.clone()), weights);
+            }
+        }
+    }
+}
+
+/// Subtracts from some rows of a vector the same rows of vectors of this size, one after the other, times their weights.
+/// Several at once, so that each row is read and written once for all of them.
+#[inline(always)]
+fn take_multiples(values: &mut [f64], (vectors, size, rows): (&[f64], usize, Range<usize>), weights: &[f64]) {
+    let count = values.len();
+    let part = |which: usize| &vectors[which * size..][rows.clone()][..count];
+    for (group, weights) in weights.chunks(AT_ONCE).enumerate() {
+        let first = group * AT_ONCE;
+        if let [a, b, c, d] = *weights {
+            let [p, q, r, s] = [part(first), part(first + 1), part(first + 2), part(first + 3)];
+            for row in 0..count {
+                values[row] = values[row] - a * p[row] - b * q[row] - c * r[row] - d * s[row];
+            }
+        } else {
+            for (which, weight) in weights.iter().enumerate() {
+                values.iter_mut().zip(part(first + which)).for_each(|(value, entry)| *value -= weight * entry);
             }
         }
     }

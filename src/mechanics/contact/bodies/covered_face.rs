@@ -32,8 +32,7 @@ pub(super) struct CoveredFace {
 /// All variables of up to two faces.
 pub(super) const VARIABLES: usize = 2 * OF_FACE;
 
-/// Calls `each` with every variable that the values at the node depend on through the gradient `weights` (of all
-/// variables of the covered faces).
+/// Calls `each` with the gradient `weights` (of all variables of the covered faces) in terms of the positions of nodes.
 pub(super) fn each_gradient(
     covered: &[CoveredFace],
     weights: &[f64; VARIABLES],
@@ -41,14 +40,10 @@ pub(super) fn each_gradient(
 ) {
     for (face, weights) in covered.iter().zip(weights.chunks_exact(OF_FACE)) {
         let by_length = weights[MOMENTS];
-        let [first, last] = face.nodes;
-        each(first, face.along.map(|part| -by_length * part));
-        each(last, face.along.map(|part| by_length * part));
+        face.each_of_length(|node, gradient| each(node, gradient.map(|part| by_length * part)));
         for piece in &face.pieces {
-            let variables = std::array::from_fn(|k| WithGradient::<5>::variable(piece.values[k], k));
-            let moments = moments(&variables, piece.along, piece.goes_on, face.at.from);
             let mut slopes = [0.0; 5];
-            for (moment, weight) in moments.iter().zip(weights) {
+            for (moment, weight) in face.moments_of(piece).iter().zip(weights) {
                 slopes.iter_mut().zip(&moment.gradient).for_each(|(sum, part)| *sum += weight * part);
             }
             face.each_coordinate(piece, &slopes, &mut each);
@@ -56,7 +51,32 @@ pub(super) fn each_gradient(
     }
 }
 
+/// Calls `each` with every variable of the covered faces and its gradient by the positions of nodes.
+pub(super) fn each_variable(covered: &[CoveredFace], mut each: impl FnMut(usize, usize, PlaneVector)) {
+    for (which, face) in covered.iter().enumerate() {
+        let first = which * OF_FACE;
+        face.each_of_length(|node, gradient| each(first + MOMENTS, node, gradient));
+        for piece in &face.pieces {
+            for (k, moment) in face.moments_of(piece).iter().enumerate() {
+                face.each_coordinate(piece, &moment.gradient, &mut |node, gradient| each(first + k, node, gradient));
+            }
+        }
+    }
+}
+
 impl CoveredFace {
+    /// The moments of a piece with their gradients by the piece's values.
+    fn moments_of(&self, piece: &CoveringPiece) -> [WithGradient<5>; MOMENTS] {
+        let variables = std::array::from_fn(|k| WithGradient::variable(piece.values[k], k));
+        moments(&variables, piece.along, piece.goes_on, self.at.from)
+    }
+
+    /// Calls `each` with the gradient of the length by the positions of the nodes.
+    fn each_of_length(&self, mut each: impl FnMut(usize, PlaneVector)) {
+        each(self.nodes[0], self.along.map(|part| -part));
+        each(self.nodes[1], self.along);
+    }
+
     pub(super) fn moments(&self) -> [f64; OF_FACE] {
         let mut sums = [0.0; OF_FACE];
         for piece in &self.pieces {

@@ -126,10 +126,27 @@ impl MortarNode {
 
     /// The present positions of the ends of an opposite face.
     fn ends(&self, displacement: LocalDisplacements<'_>, face: &SurfaceFace) -> [PlaneVector; 2] {
-        face.nodes.map(|node| {
-            let (place, local) = (self.opposite.places[node], self.local(node));
-            [place[0] + displacement(2 * local), place[1] + displacement(2 * local + 1)]
-        })
+        face.nodes.map(|node| self.end(displacement, node))
+    }
+
+    /// The present position of a node of the opposite surface.
+    fn end(&self, displacement: LocalDisplacements<'_>, node: usize) -> PlaneVector {
+        let (place, local) = (self.opposite.places[node], self.local(node));
+        [place[0] + displacement(2 * local), place[1] + displacement(2 * local + 1)]
+    }
+
+    /// The present positions of the ends of consecutive opposite faces, each node read once.
+    fn ends_of(&self, displacement: LocalDisplacements<'_>, faces: Range<usize>) -> SmallVec<[[PlaneVector; 2]; 64]> {
+        let mut all: SmallVec<[[PlaneVector; 2]; 64]> = SmallVec::with_capacity(faces.len());
+        let mut before: Option<usize> = None;
+        for face in &self.opposite.faces[faces] {
+            let shared = all.last().filter(|_| before == Some(face.nodes[0])).map(|ends| ends[1]);
+            let [first, last] = face.nodes;
+            let first = shared.unwrap_or_else(|| self.end(displacement, first));
+            all.push([first, self.end(displacement, last)]);
+            before = Some(last);
+        }
+        all
     }
 
     /// The part of the opposite surface that the node may be in front of: the chain that is nearest to it, or the layer.
@@ -164,6 +181,7 @@ impl MortarNode {
     /// The faces with what is opposite; none where no part of any is covered.
     fn covered(&self, displacement: LocalDisplacements<'_>) -> SmallVec<[CoveredFace; 2]> {
         let in_front = self.in_front(displacement);
+        let faces = self.ends_of(displacement, in_front.clone());
         let mut reference: Option<f64> = None;
         let mut is_covered = false;
         let mut all = SmallVec::new();
@@ -175,9 +193,9 @@ impl MortarNode {
             let normal = turned_left(along);
             let mut pieces: SmallVec<[CoveringPiece; 4]> = SmallVec::new();
             let (mut area, mut centre) = (0.0, 0.0);
-            for index in in_front.clone().filter(|index| self.looks_at(which, *index)) {
+            for (index, ends) in in_front.clone().zip(&faces).filter(|(index, _)| self.looks_at(which, *index)) {
                 let face = &self.opposite.faces[index];
-                let ends = self.ends(displacement, face).map(|end| difference(end, first));
+                let ends = ends.map(|end| difference(end, first));
                 let [s_first, s_last] = ends.map(|end| product(along, end));
                 let [h_first, h_last] = ends.map(|end| product(normal, end));
                 if !is_in_front([s_first, s_last], [h_first, h_last], length) {

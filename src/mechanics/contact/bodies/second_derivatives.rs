@@ -3,7 +3,7 @@
 
 use crate::algebra::differential::{Differential, WithHessian};
 use crate::mechanics::contact::bodies::covered_face::{
-    CoveredFace, CoveringPiece, MetNodes, VARIABLES, each_gradient, nodal_gradients,
+    CoveredFace, CoveringPiece, MetNodes, VARIABLES, each_gradient, each_variable, nodal_gradients,
 };
 use crate::mechanics::contact::bodies::face_moments::{MOMENTS, MeanAtNode, OF_FACE, moments, nodal_values};
 use crate::mechanics::contact::bodies::turned_left;
@@ -72,16 +72,13 @@ fn by_variables(covered: &[CoveredFace], whole: &WithHessian<VARIABLES>, local: 
     let size = local.size;
     let count = covered.len() * OF_FACE;
     let mut jacobian = vec![0.0; count * size];
-    for (which, row) in jacobian.chunks_exact_mut(size).enumerate() {
-        let mut weights = [0.0; VARIABLES];
-        weights[which] = 1.0;
-        each_gradient(covered, &weights, |node, gradient| {
-            let at = 2 * local.met.place(node);
-            (0..2).for_each(|k| row[at + k] += gradient[k]);
-        });
-    }
+    each_variable(covered, |variable, node, gradient| {
+        let at = variable * size + 2 * local.met.place(node);
+        (0..2).for_each(|k| jacobian[at + k] += gradient[k]);
+    });
+    let mut combined = vec![0.0; size];
     for first in 0..count {
-        let mut combined = vec![0.0; size];
+        combined.fill(0.0);
         for (second, row) in jacobian.chunks_exact(size).enumerate() {
             let factor = whole.hessian[first][second];
             if factor != 0.0 {
