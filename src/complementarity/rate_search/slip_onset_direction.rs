@@ -14,7 +14,7 @@
 //! stick or separate; `simultaneous_slips` finds simultaneous onsets.
 
 use crate::algebra::scalar_root::find_root;
-use crate::complementarity::rate_search::branch_and_bound::{Effort, Ray, explore};
+use crate::complementarity::rate_search::branch_and_bound::{Effort, Findings, Ray, explore};
 use crate::complementarity::rate_search::tolerances::{MISFIT_TOLERANCE, SMALLEST_RAY_COSINE};
 use crate::complementarity::rates::gauss_seidel::own_column;
 use crate::complementarity::rates::rate_problem::{Choice, Entity, RateProblem};
@@ -42,16 +42,21 @@ pub(crate) struct Touch {
     pub opening: Vec<usize>,
 }
 
-/// All rays along which a touching entity slips while the others take one of their options.
-pub(crate) fn slips(problem: &RateProblem, touch: &Touch, effort: Effort<'_>) -> Vec<Turning> {
+/// The rays along which a touching entity slips while the others take one of their options.
+pub(crate) struct Onsets {
+    pub slips: Vec<Turning>,
+    /// Whether the searches at all angles were complete.
+    pub complete: bool,
+}
+
+/// The onsets of slip of a touching entity; the searches at all angles together have the effort of one search.
+pub(crate) fn slips(problem: &RateProblem, touch: &Touch, effort: Effort<'_>) -> Onsets {
     let mut found: Vec<Turning> = Vec::new();
     let mut before: Vec<(Ray, f64)> = Vec::new();
+    let mut search = CircleSearch { problem, touch, effort, complete: true };
     for sector in 0..=SECTORS {
-        if effort.cancel.is_cancelled() {
-            return found;
-        }
         let angle = TAU * sector as f64 / SECTORS as f64;
-        let here = touch.rays(problem, angle, effort);
+        let here = search.rays(angle);
         for (ray, misfit) in &here {
             if misfit.abs() <= MISFIT_TOLERANCE {
                 touch.keep(&mut found, problem, ray.clone(), angle);
@@ -67,8 +72,7 @@ pub(crate) fn slips(problem: &RateProblem, touch: &Touch, effort: Effort<'_>) ->
             let first = TAU * (sector as f64 - 1.0) / SECTORS as f64;
             let mut last_ray = other.clone();
             let evaluate = |angle: f64| {
-                let rays = touch.rays(problem, angle, effort);
-                let near = rays.into_iter().filter(|(one, _)| one.chosen() == ray.chosen());
+                let near = search.rays(angle).into_iter().filter(|(one, _)| one.chosen() == ray.chosen());
                 let (one, value) =
                     near.max_by(|a, b| cosine(problem, &a.0, ray).total_cmp(&cosine(problem, &b.0, ray)))?;
                 last_ray = one;
@@ -80,7 +84,29 @@ pub(crate) fn slips(problem: &RateProblem, touch: &Touch, effort: Effort<'_>) ->
         }
         before = here;
     }
-    found
+    Onsets { slips: found, complete: search.complete }
+}
+
+/// The searches at the angles of one entity, and the effort that is left for them.
+struct CircleSearch<'a> {
+    problem: &'a RateProblem,
+    touch: &'a Touch,
+    effort: Effort<'a>,
+    complete: bool,
+}
+
+impl CircleSearch<'_> {
+    /// The rays at an angle, each with its misfit; none where no effort is left.
+    fn rays(&mut self, angle: f64) -> Vec<(Ray, f64)> {
+        if self.effort.most_modes == 0 || self.effort.cancel.is_cancelled() {
+            self.complete = false;
+            return Vec::new();
+        }
+        let (rays, findings) = self.touch.rays(self.problem, angle, self.effort);
+        self.effort.most_modes = self.effort.most_modes.saturating_sub(findings.examined);
+        self.complete &= findings.unexplored == 0;
+        rays
+    }
 }
 
 fn cosine(problem: &RateProblem, first: &Ray, second: &Ray) -> f64 {
@@ -101,8 +127,9 @@ impl Touch {
         })
     }
 
-    /// The rays for one angle, each with the deviation of the traction from the direction, relative to the force rates.
-    fn rays(&self, problem: &RateProblem, angle: f64, effort: Effort<'_>) -> Vec<(Ray, f64)> {
+    /// The rays for one angle, each with the deviation of the traction from the direction, relative to the force rates;
+    /// and what the search for them found otherwise.
+    fn rays(&self, problem: &RateProblem, angle: f64, effort: Effort<'_>) -> (Vec<(Ray, f64)>, Findings) {
         let copied = problem.forms.len() + problem.motion.len() + problem.reactions.len();
         let _held = budget::take::<f64>(copied);
         budget::spend(copied);
@@ -134,13 +161,13 @@ impl Touch {
             motion: problem.motion.clone(),
             reactions: problem.reactions.clone(),
         };
-        let findings = explore(&turned, Vec::new, effort);
+        let mut findings = explore(&turned, Vec::new, effort);
         let with_misfit = |ray: Ray| {
             let size = (&problem.reactions * &ray.weights).amax().max(f64::MIN_POSITIVE);
             let misfit = misfit.dot(&ray.weights) / size;
             (ray, misfit)
         };
-        findings.rays.into_iter().map(with_misfit).collect()
+        (std::mem::take(&mut findings.rays).into_iter().map(with_misfit).collect(), findings)
     }
 
     /// Whether the node moves along the direction (otherwise it sticks) and is pressed (otherwise it is free).
