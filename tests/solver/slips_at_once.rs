@@ -54,6 +54,21 @@ fn blocks_that_do_not_feel_each_other() {
     }
 }
 
+/// The circle of directions in which a block may begin to slip is searched with the effort of one search. Where this does not
+/// suffice, what was found is listed and the rest counted.
+#[test]
+fn a_circle_that_is_not_searched_to_its_end_is_counted() {
+    for (most_modes, left) in [(65_536, 0), (100, 1)] {
+        let mut posted = blocks(&[[1.0, 0.2]], &[]);
+        posted["model"]["elements"][0]["stiffness"] = json!([[1, 0.2, 0.1], [0.2, 2, 0.3], [0.1, 0.3, 1.5]]);
+        posted["analysis"] = json!({"max_modes": most_modes});
+        let (increments, report) = trace(&request(&posted.to_string()));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+        assert_eq!(increments[0].point.unexplored_modes, left, "max_modes {most_modes}");
+        assert!(increments[0].directions.as_ref().is_some_and(|directions| !directions.is_empty()));
+    }
+}
+
 /// Two blocks joined by a spring `c`, pulled by `(1, ±p)`: mirror images of each other. With `d` the direction of the
 /// slip, `1 - μ d_x = λ d_x` and `p - μ d_y = (1 + 2 c) λ d_y`.
 #[test]
