@@ -42,8 +42,8 @@ pub struct FoundDirections {
     pub is_proven: bool,
     /// Modes that were not examined.
     pub unexplored: u64,
-    /// Number of unexamined modes in which nodes in space begin to slip in unknown directions, one of them or several
-    /// simultaneously, where the list is not proven to be complete.
+    /// Number of unexamined modes in which nodes in space begin to slip simultaneously, in directions not proven to be
+    /// complete.
     pub slips_in_doubt: u64,
     /// Some mode has more than one independent direction.
     pub degenerate: bool,

@@ -133,18 +133,18 @@ impl<'a> Condensed<'a> {
             for touch in &touches {
                 let onsets = slip_onset_direction::slips(&self.problem, touch, effort);
                 turning.extend(onsets.slips);
-                found.slips_in_doubt += u64::from(!onsets.complete);
+                found.unexplored = found.unexplored.saturating_add(u64::from(!onsets.complete));
             }
         }
         if touches.len() > 1 {
             let at_once = simultaneous_slips::slips(&self.problem, &touches, effort.cancel);
             turning.extend(at_once.rays);
             if !at_once.complete {
-                found.slips_in_doubt = found.slips_in_doubt.max(touches.len() as u64);
+                found.slips_in_doubt = touches.len() as u64;
+                found.unexplored = found.unexplored.saturating_add(found.slips_in_doubt);
             }
         }
         self.add_slips_out_of_groups(held, state, effort, found);
-        found.unexplored = found.unexplored.saturating_add(found.slips_in_doubt);
         for slip in &turning {
             let directions: Vec<(usize, Vector)> = slip
                 .slips
@@ -189,7 +189,7 @@ impl<'a> Condensed<'a> {
         for (contact, touch) in &touches {
             let tangents = self.loading.frame(*contact, state).tangents;
             let onsets = slip_onset_direction::slips(&problem, touch, effort);
-            found.slips_in_doubt += u64::from(!onsets.complete);
+            found.unexplored = found.unexplored.saturating_add(u64::from(!onsets.complete));
             for slip in onsets.slips {
                 let parts = slip.slips[0].1;
                 let direction = add(&scaled(&tangents[0], parts[0]), parts[1], &tangents[1]);

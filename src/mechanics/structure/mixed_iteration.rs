@@ -45,16 +45,12 @@ impl IndependentForces {
 
     /// Adds to the forces on all degrees of freedom what the residual of the mixed form exceeds `f_int(u)` by.
     pub fn add_to_residual(&self, structure: &Structure, displacement: &[f64], unbalanced: &mut [f64]) {
-        let (mut of_motion, mut mixed) = (ElementVector::new(), ElementVector::new());
+        let mut excess = ElementVector::new();
         each(structure, &self.0, |at, own_forces| {
             let own = gathered(at, displacement);
-            of_motion.resize(own.len(), 0.0);
-            mixed.resize(own.len(), 0.0);
-            at.element.write_force(&own, &mut of_motion);
-            at.element.write_mixed_force(&own, own_forces, &mut mixed);
-            for ((freedom, mixed), of_motion) in at.freedoms.iter().zip(&mixed).zip(&of_motion) {
-                unbalanced[*freedom] += mixed - of_motion;
-            }
+            excess.resize(own.len(), 0.0);
+            at.element.write_mixed_excess(&own, own_forces, &mut excess);
+            at.freedoms.iter().zip(&excess).for_each(|(freedom, value)| unbalanced[*freedom] += value);
         });
     }
 

@@ -54,9 +54,9 @@ pub trait FiniteElement: Debug + Send + Sync {
     /// Writes the independent forces that belong to the displacements.
     fn write_independent_forces(&self, _displacement: &[f64], _forces: &mut [f64]) {}
 
-    /// Writes the nodal forces of the mixed form.
-    fn write_mixed_force(&self, displacement: &[f64], _forces: &[f64], force: &mut [f64]) {
-        self.write_force(displacement, force);
+    /// Writes what the nodal forces of the mixed form exceed those of the displacements by.
+    fn write_mixed_excess(&self, _displacement: &[f64], _forces: &[f64], excess: &mut [f64]) {
+        excess.fill(0.0);
     }
 
     /// Writes the tangent of the mixed form.

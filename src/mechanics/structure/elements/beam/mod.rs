@@ -188,9 +188,16 @@ impl FiniteElement for Beam {
         forces.iter_mut().zip(own).for_each(|(force, value)| *force = value);
     }
 
-    fn write_mixed_force(&self, displacement: &[f64], forces: &[f64], force: &mut [f64]) {
-        let ends = self.deformed_with(displacement, forces).map(|segment| segment.mixed_end_forces());
-        write_end_forces(ends, force);
+    fn write_mixed_excess(&self, displacement: &[f64], forces: &[f64], excess: &mut [f64]) {
+        let forces = forces.chunks_exact(2).map(|force| [force[0], force[1]]);
+        let ends = self.deformed(displacement).zip(forces).map(|(segment, force)| {
+            let (of_motion, mixed) = (segment.end_forces(), segment.with_force(force).mixed_end_forces());
+            EndForces {
+                force: [0, 1].map(|k| mixed.force[k] - of_motion.force[k]),
+                moments: [0, 1].map(|k| mixed.moments[k] - of_motion.moments[k]),
+            }
+        });
+        write_end_forces(ends, excess);
     }
 
     fn write_mixed_stiffness(&self, displacement: &[f64], forces: &[f64], stiffness: &mut [f64]) {
@@ -211,8 +218,9 @@ impl FiniteElement for Beam {
     fn write_force_sizes(&self, displacement: &[f64], least: f64, sizes: &mut [f64]) {
         let size = displacement.len();
         let mut stiffness: SmallVec<[f64; 81]> = SmallVec::from_elem(0.0, size * size);
-        self.write_stiffness(displacement, &mut stiffness);
-        let carried = self.write_force(displacement, sizes);
+        let deformed: SmallVec<[DeformedSegment; 2]> = self.deformed(displacement).collect();
+        write_tangents(deformed.iter().copied(), size, &mut stiffness);
+        let carried = write_end_forces(deformed.iter().map(DeformedSegment::end_forces), sizes);
         let turned = displacement.iter().skip(2).step_by(OF_NODE).fold(0.0_f64, |most, turn| most.max(turn.abs()));
         let swept = turned.min(1.0) * self.length();
         for ((place, size_of), row) in sizes.iter_mut().enumerate().zip(stiffness.chunks(size)) {
