@@ -152,6 +152,7 @@ mod tests {
         let state = |angle: f64| State {
             displacement: vec![angle.cos()],
             remainder: Vec::new(),
+            load_remainder: 0.0,
             load: angle.sin(),
             reactions: Vec::new(),
         };

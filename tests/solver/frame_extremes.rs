@@ -107,6 +107,39 @@ fn the_rounding_of_displacements_moves_no_arch_of_short_elements() {
     close(coarse / fine, 1.0, 1e-5, "the load minimum");
 }
 
+/// A ball comes down on a slender cantilever of so many elements, from a gap, until the node below has sunk by 0.3.
+fn ball_on_a_cantilever(count: usize, axial: f64, gap: f64) -> JobRequest {
+    let name = |k: usize| format!("n{k}");
+    let nodes: serde_json::Map<String, Value> =
+        (0..=count).map(|k| (name(k), json!([k as f64 / count as f64, 0]))).collect();
+    let beam = |k: usize| json!({"kind": "beam", "nodes": [name(k), name(k + 1)], "axial_stiffness": axial, "bending_stiffness": 1.0});
+    let below = name(count * 4 / 5);
+    typed(json!({"model": {
+        "dimension": 2, "nodes": nodes, "supports": {"n0": ["x", "y", "rz"]},
+        "elements": (0..count).map(beam).collect::<Vec<_>>(),
+        "obstacles": {"ball": {"kind": "ball", "center": [0.8, 0.2 + gap], "radius": 0.2}},
+        "contacts": [{"node": below, "obstacle": "ball", "friction": 0.3}],
+        "stages": [{
+            "name": "down", "obstacle_motion": {"ball": [0, -1]},
+            "until": {"displacement": {"node": below, "component": "y", "below": -0.3}},
+        }],
+    }}))
+}
+
+/// The stretch of a slender beam carries a node that sticks after a millionth of the ball's way, where the rounding of the load
+/// factor, which moves the ball, strains the beam by more than the accepted residual. The gap before the touch changes nothing.
+#[test]
+fn the_rounding_of_the_load_that_moves_a_ball_strains_no_beam() {
+    for (count, axial) in [(20, 1e6), (40, 1e6), (20, 1e8)] {
+        let [touching, apart] = [0.0, 1e-3].map(|gap| {
+            let (increments, report) = trace(&ball_on_a_cantilever(count, axial, gap));
+            assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{count} elements, EA = {axial:e}, gap {gap}");
+            last(&increments).contacts[0].normal_reaction
+        });
+        close(apart / touching, 1.0, 1e-7, "the force of the ball");
+    }
+}
+
 /// A ring that is pressed onto a smooth floor: its foot opens, and what lies between its two feet comes to lie flat each
 /// time that one of them is unloaded. There its reaction and the gaps of many nodes vanish together, and the gaps, of second
 /// order, locate the point the worse the finer the ring is divided. The load changes by 2e-4 from 100 to 200 elements, by 2e-5 from

@@ -160,7 +160,7 @@ pub(crate) fn next_stage(trace: &mut PathTrace<'_>) -> bool {
     at.reached.push(at.here.state.load);
     at.hold(trace.scene);
     at.stage += 1;
-    at.here.state.load = 0.0;
+    at.here.state.set_load(0.0);
     at.here.rate = None;
     at.here.signature = None;
     (at.here.before, at.here.apart) = (None, None);
@@ -177,7 +177,7 @@ pub(crate) fn at_bound(trace: &mut PathTrace<'_>, rate: &Rate) -> bool {
     let left = |end: &End| EventFunction::End(*end).value(trace.loading(), &here.modes, &here.state, rate);
     let met = trace.scene.stages[trace.at.stage].ends.iter().find(|end| left(end) <= BOUND_TOLERANCE);
     if let Some(End::Load { bound, .. }) = met {
-        trace.at.here.state.load = *bound;
+        trace.at.here.state.set_load(*bound);
     }
     met.is_some()
 }

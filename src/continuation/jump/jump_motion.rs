@@ -273,7 +273,7 @@ fn accept(trace: &mut PathTrace<'_>, moved: Moved, motion: JumpProgress) {
         totals,
         ..at
     };
-    after.here.state.load = motion.from.load + motion.raised;
+    after.here.state.set_load(motion.from.load + motion.raised);
     (after.here.rate, after.here.signature, after.here.before, after.here.apart) = (None, None, None, None);
     (after.here.drift, after.here.beside) = (None, None);
     (after.here.is_singular, after.here.is_factorised) = (false, false);

@@ -149,7 +149,7 @@ fn begin(trace: &PathTrace<'_>) -> Progress {
         ..before.clone()
     };
     at.reached.extend([before.here.state.load, -1.0]);
-    at.here.state.load = 0.0;
+    at.here.state.set_load(0.0);
     (at.here.rate, at.here.signature, at.here.before, at.here.apart) = (None, None, None, None);
     (at.here.drift, at.here.beside, at.here.is_singular) = (None, None, false);
     let Totals { index, arc_length, force_scale, work, .. } = before.totals;

@@ -86,7 +86,7 @@ pub(super) fn place_exactly(system: &ModeSystem<'_>, state: &mut State) {
         if !matches!(role, Role::Stick | Role::Held) || !holds_node(system, contact, node) {
             continue;
         }
-        let shift = scaled(&system.loading.pattern.shifts[contact], state.load - system.anchor.load);
+        let shift = scaled(&system.loading.pattern.shifts[contact], state.load_beyond(system.anchor));
         for (freedom, shift) in structure.translations_of(node).zip(shift) {
             if structure.unknown_of[freedom].is_some() {
                 let kept = system.anchor.remainder.get(freedom).copied().unwrap_or(0.0);

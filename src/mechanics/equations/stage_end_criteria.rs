@@ -49,7 +49,7 @@ impl End {
     /// Puts a state that meets a bound up to round-off exactly on the bound.
     pub fn make_exact(self, state: &mut State) {
         match self {
-            Self::Load { bound, .. } => state.load = bound,
+            Self::Load { bound, .. } => state.set_load(bound),
             Self::Displacement { freedom, bound, .. } => state.place(freedom, bound, 0.0),
             Self::LimitPoints(_) | Self::ContactChanges(_) | Self::Increments(_) => {}
         }

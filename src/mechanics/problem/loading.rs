@@ -190,6 +190,9 @@ impl Loading<'_> {
         for (freedom, (held, pattern)) in self.held.supports.iter().zip(&self.pattern.supports).enumerate() {
             if self.structure.unknown_of[freedom].is_none() {
                 state.place(freedom, *held, state.load * pattern);
+                if let Some(remainder) = state.remainder.get_mut(freedom) {
+                    *remainder += state.load_remainder * pattern;
+                }
             }
         }
     }

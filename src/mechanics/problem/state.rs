@@ -13,6 +13,9 @@ pub struct State {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub remainder: Vec<f64>,
     pub load: f64,
+    /// What the rounding of the load factor leaves, where displacements have remainders: supports and obstacles move with it.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub load_remainder: f64,
     pub reactions: Vec<Reaction>,
 }
 
@@ -30,8 +33,19 @@ impl State {
             displacement: vec![0.0; structure.freedoms()],
             remainder: if structure.keeps_remainders() { vec![0.0; structure.freedoms()] } else { Vec::new() },
             load: 0.0,
+            load_remainder: 0.0,
             reactions: vec![Reaction::default(); contacts],
         }
+    }
+
+    /// Sets the load factor to exactly this value.
+    pub fn set_load(&mut self, value: f64) {
+        (self.load, self.load_remainder) = (value, 0.0);
+    }
+
+    /// The load factor less that of another state, with what both keep of rounding.
+    pub fn load_beyond(&self, other: &Self) -> f64 {
+        (self.load - other.load) + (self.load_remainder - other.load_remainder)
     }
 
     /// Sets a displacement to the sum of two numbers.
@@ -63,7 +77,12 @@ impl State {
                 (*value, *remainder) = sum_and_remainder(sum, left + *remainder);
             }
         }
-        self.load += step * rate.load;
+        if self.remainder.is_empty() {
+            self.load += step * rate.load;
+        } else {
+            let (sum, left) = sum_and_remainder(self.load, step * rate.load);
+            (self.load, self.load_remainder) = sum_and_remainder(sum, left + self.load_remainder);
+        }
         for (reaction, rate) in self.reactions.iter_mut().zip(&rate.reactions) {
             reaction.add(step, rate);
         }
@@ -73,7 +92,7 @@ impl State {
     pub fn set_to(&mut self, other: &Self) {
         self.displacement.clone_from(&other.displacement);
         self.remainder.clone_from(&other.remainder);
-        self.load = other.load;
+        (self.load, self.load_remainder) = (other.load, other.load_remainder);
         self.reactions.clone_from(&other.reactions);
     }
 
@@ -173,6 +192,10 @@ impl Rate {
 /// `a·b`
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// The rounded sum of two numbers, and what its rounding left: together exactly the sum (D. E. Knuth, The Art of Computer

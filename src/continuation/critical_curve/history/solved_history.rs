@@ -106,7 +106,8 @@ impl StateScales {
                 }
             }
         }
-        state.load *= self.loads[stage] / other.loads[stage];
+        let ratio = self.loads[stage] / other.loads[stage];
+        (state.load, state.load_remainder) = (ratio * state.load, ratio * state.load_remainder);
         for Reaction { normal, tangential } in &mut state.reactions {
             *normal *= force;
             tangential.iter_mut().for_each(|value| *value *= force);
@@ -173,7 +174,8 @@ impl SolvedHistory {
         for (place, (point, guess)) in history.points.iter().zip(guesses).enumerate() {
             if reached.len() < point.stage {
                 while reached.len() < point.stage {
-                    reached.push(std::mem::take(&mut anchor.load));
+                    reached.push(anchor.load);
+                    anchor.set_load(0.0);
                 }
                 held = constant_load(scene, &reached);
             }
