@@ -43,6 +43,12 @@ impl State {
         (self.load, self.load_remainder) = (value, 0.0);
     }
 
+    /// The load factor, which becomes zero.
+    pub fn take_load(&mut self) -> f64 {
+        self.load_remainder = 0.0;
+        std::mem::take(&mut self.load)
+    }
+
     /// The load factor less that of another state, with what both keep of rounding.
     pub fn load_beyond(&self, other: &Self) -> f64 {
         (self.load - other.load) + (self.load_remainder - other.load_remainder)

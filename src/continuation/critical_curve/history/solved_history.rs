@@ -174,8 +174,7 @@ impl SolvedHistory {
         for (place, (point, guess)) in history.points.iter().zip(guesses).enumerate() {
             if reached.len() < point.stage {
                 while reached.len() < point.stage {
-                    reached.push(anchor.load);
-                    anchor.set_load(0.0);
+                    reached.push(anchor.take_load());
                 }
                 held = constant_load(scene, &reached);
             }
