@@ -35,8 +35,8 @@ use turning_nodes::TurningNodes;
 /// Largest number of unknowns for which matrices are dense.
 pub const MOST_DENSE: usize = 16;
 
-/// Force (dimensionless) by which the rounding of displacements of one may be off, up to which this rounding is of no
-/// account: the residual that is attainable without stiff parts.
+/// Force, over the force scale, that the rounding of a displacement of 1 may cause without harm: the tolerance up to which
+/// reactions count as zero. States of stiffer structures keep what rounding leaves.
 const ROUNDING_THAT_MATTERS: f64 = 1e-10;
 
 /// Largest number of unknowns for which null spaces and eigenvalues are computed, in dense matrices: beyond it, smooth
@@ -315,9 +315,8 @@ impl Structure {
         })
     }
 
-    /// Whether the rounding of displacements is no small force, so that a state keeps what it leaves
-    /// ([`State::remainder`](crate::mechanics::problem::state::State::remainder)): without it no state of a beam of many
-    /// short elements is in equilibrium.
+    /// Whether the rounding of displacements causes forces that matter, as in a beam of many short elements. A state then
+    /// keeps what rounding leaves ([`State::remainder`](crate::mechanics::problem::state::State::remainder)).
     pub fn keeps_remainders(&self) -> bool {
         f64::EPSILON * self.largest_stiffness > ROUNDING_THAT_MATTERS
     }

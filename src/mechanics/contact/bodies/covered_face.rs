@@ -32,7 +32,8 @@ pub(super) struct CoveredFace {
 /// All variables of up to two faces.
 pub(super) const VARIABLES: usize = 2 * OF_FACE;
 
-/// Calls `each` with the gradient `weights` (of all variables of the covered faces) in terms of the positions of nodes.
+/// Calls `each` with a node and the gradient by its position of the function whose gradient by the variables of the
+/// covered faces is `weights`; a node may come several times.
 pub(super) fn each_gradient(
     covered: &[CoveredFace],
     weights: &[f64; VARIABLES],
@@ -51,7 +52,8 @@ pub(super) fn each_gradient(
     }
 }
 
-/// Calls `each` with every variable of the covered faces and its gradient by the positions of nodes.
+/// Calls `each` with a variable of the covered faces, a node and the variable's gradient by its position, for all
+/// variables; a node may come several times.
 pub(super) fn each_variable(covered: &[CoveredFace], mut each: impl FnMut(usize, usize, PlaneVector)) {
     for (which, face) in covered.iter().enumerate() {
         let first = which * OF_FACE;

@@ -54,7 +54,7 @@ pub trait FiniteElement: Debug + Send + Sync {
     /// Writes the independent forces that belong to the displacements.
     fn write_independent_forces(&self, _displacement: &[f64], _forces: &mut [f64]) {}
 
-    /// Writes what the nodal forces of the mixed form exceed those of the displacements by.
+    /// Writes the nodal forces of the mixed form less those that the displacements give.
     fn write_mixed_excess(&self, _displacement: &[f64], _forces: &[f64], excess: &mut [f64]) {
         excess.fill(0.0);
     }
