@@ -75,11 +75,12 @@ pub struct Effort<'a> {
 /// contacts change as many. A search among hundreds of contacts, whose nodes change far more, thus ends after about as
 /// much work as one among a few.
 const UNIT_OF_WORK: u64 = 32_768;
-/// A search that has closed less than a share of its tree after one of so many parts of its effort ends there: what is
-/// left of the tree is counted, as where all effort is spent. Searches among 16, 25, 33, 41 and 129 touching contacts
-/// close 1.9, 6e-3, 3e-6, 9e-10 and 2e-54 (of 2: one for each sign) with all of their effort.
+/// A search that has closed less than a share of its tree (of 2: one for each sign of the load rate) after one of so many
+/// parts of its effort would not close half of it with all of its effort, as closed shares grow about evenly. It ends
+/// there: what is left of the tree is counted, as where all effort is spent. Searches among 16, 17, 25, 33, 41 and 129
+/// touching contacts close 1.9, 0.46, 6e-3, 3e-6, 9e-10 and 2e-54 with all of their effort.
 const PARTS_OF_EFFORT: u64 = 8;
-const LEAST_CLOSED: f64 = 1e-4;
+const LEAST_CLOSED: f64 = 0.1;
 /// Largest number of nodes inside solution sets of more than one dimension, whose edges are rays like any other.
 const MOST_IN_SETS: u64 = 512;
 

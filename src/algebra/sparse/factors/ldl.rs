@@ -7,7 +7,7 @@
 
 use crate::algebra::dense::inertia::{Inertia, inertia};
 use crate::algebra::sparse::factors::pattern::Pattern;
-use crate::algebra::sparse::factors::simultaneous_solves;
+use crate::algebra::sparse::factors::substitutions::{self, Substitutions};
 use crate::algebra::sparse::factors::supernodal_ldl;
 use crate::algebra::sparse::factors::tolerances::{PIVOT_SUBSTITUTE, SMALLEST_PIVOT};
 use crate::resources::budget::{self, Taken};
@@ -164,6 +164,21 @@ impl SymmetricFactor {
         &self.raised
     }
 
+    /// The factors for substitutions by themselves, of the raised and scaled matrix.
+    pub(crate) fn substitutions(&self) -> Substitutions<'_> {
+        Substitutions::new(&self.pattern.symbolic, &self.values)
+    }
+
+    /// The place of each unknown in the elimination order; `None` where both are the same.
+    pub(crate) fn places(&self) -> Option<&[usize]> {
+        self.pattern.symbolic.cholesky.perm().map(|perm| perm.arrays().1)
+    }
+
+    /// The scale factors of rows and columns.
+    pub(crate) fn scales(&self) -> &[f64] {
+        &self.scales
+    }
+
     /// Number of negative pivots: the negative eigenvalues of the raised matrix (Sylvester's law).
     pub fn negative_pivots(&self) -> usize {
         let mut negative = 0;
@@ -234,7 +249,7 @@ impl SymmetricFactor {
             return true;
         }
         if count > 1 {
-            simultaneous_solves::solve(&self.pattern.symbolic, &self.values, &self.scales, right_hand_sides);
+            substitutions::solve(&self.pattern.symbolic, &self.values, &self.scales, right_hand_sides);
             return right_hand_sides.iter().all(|value| value.is_finite());
         }
         let scale = |values: &mut [f64]| {

@@ -7,7 +7,7 @@
 //! | `nested_dissection` | an elimination order by separators, for large factors in space |
 //! | `bordered_matrix` | the assembled matrix |
 //! | `ldl`, `supernodal_ldl` | `K = L D Lᵀ`: small pivots raised, increments removed by borders; in pieces if large |
-//! | `simultaneous_solves` | `L D Lᵀ` with several right-hand sides |
+//! | `substitutions` | forward and backward substitution with `L D Lᵀ`, several right-hand sides together |
 //! | `cholesky` | whether a symmetric matrix is positive definite |
 //! | `static_pivot_lu`, `lu_pattern` | `K = L U` in the order of the symmetric factors, and the factors' patterns |
 //! | `pivoted_lu` | LU of any sparse matrix |
@@ -22,7 +22,7 @@ pub(crate) mod lu_pattern;
 pub(crate) mod nested_dissection;
 pub mod pattern;
 pub mod pivoted_lu;
-pub(crate) mod simultaneous_solves;
 pub(crate) mod static_pivot_lu;
+pub(crate) mod substitutions;
 pub(crate) mod supernodal_ldl;
 pub(crate) mod tolerances;

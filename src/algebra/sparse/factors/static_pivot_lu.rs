@@ -11,6 +11,7 @@
 
 use crate::algebra::sparse::factors::ldl::scales;
 use crate::algebra::sparse::factors::pattern::Pattern;
+use crate::algebra::sparse::factors::substitutions::take;
 use crate::algebra::sparse::factors::tolerances::SMALLEST_PIVOT;
 use crate::resources::budget::{self, Taken};
 use std::sync::Arc;
@@ -109,37 +110,58 @@ impl UnsymmetricFactor {
         if most > 0.0 { least / most } else { 1.0 }
     }
 
-    /// Solves with the raised matrix for consecutive right-hand sides, overwritten by the solutions; `false` when a
-    /// result is not finite.
-    pub fn solve(&self, right_hand_sides: &mut [f64], count: usize) -> bool {
-        let size = self.pattern.size();
-        if size == 0 || count == 0 {
-            return true;
-        }
+    /// The place of each unknown in the elimination order.
+    pub fn places(&self) -> &[usize] {
+        &self.pattern.fill().place_of
+    }
+
+    /// The scale factors of rows and columns.
+    pub fn scales(&self) -> &[f64] {
+        &self.scales
+    }
+
+    /// The pivots of the raised and scaled matrix, in the elimination order.
+    pub fn pivots(&self) -> &[f64] {
+        &self.pivots
+    }
+
+    /// Solves with `L` of the raised and scaled matrix; values in the elimination order.
+    pub fn solve_lower<const N: usize>(&self, values: &mut [[f64; N]]) {
         let fill = self.pattern.fill();
-        let mut work = vec![0.0; size];
-        for values in right_hand_sides.chunks_exact_mut(size) {
-            budget::spend(self.lower.len() + self.upper.len());
-            for (place, unknown) in work.iter_mut().zip(&fill.order) {
-                *place = values[*unknown] * self.scales[*unknown];
-            }
-            for column in 0..size {
-                let value = work[column];
-                if value != 0.0 {
-                    fill.lower(column).for_each(|entry| work[fill.lower_rows[entry]] -= self.lower[entry] * value);
-                }
-            }
-            for column in (0..size).rev() {
-                let value = work[column] / self.pivots[column];
-                work[column] = value;
-                if value != 0.0 {
-                    fill.upper(column).for_each(|entry| work[fill.upper_rows[entry]] -= self.upper[entry] * value);
-                }
-            }
-            for (place, unknown) in work.iter().zip(&fill.order) {
-                values[*unknown] = place * self.scales[*unknown];
+        budget::spend(self.lower.len() * N);
+        for column in 0..values.len() {
+            let value = values[column];
+            if value != [0.0; N] {
+                fill.lower(column)
+                    .for_each(|entry| take(&mut values[fill.lower_rows[entry]], self.lower[entry], &value));
             }
         }
-        right_hand_sides.iter().all(|value| value.is_finite())
+    }
+
+    /// Solves with `U`; values in the elimination order.
+    pub fn solve_upper<const N: usize>(&self, values: &mut [[f64; N]]) {
+        let fill = self.pattern.fill();
+        budget::spend(self.upper.len() * N);
+        for column in (0..values.len()).rev() {
+            let value = values[column].map(|value| value / self.pivots[column]);
+            values[column] = value;
+            if value != [0.0; N] {
+                fill.upper(column)
+                    .for_each(|entry| take(&mut values[fill.upper_rows[entry]], self.upper[entry], &value));
+            }
+        }
+    }
+
+    /// Solves with `Uᵀ`; values in the elimination order.
+    pub fn solve_upper_transposed<const N: usize>(&self, values: &mut [[f64; N]]) {
+        let fill = self.pattern.fill();
+        budget::spend(self.upper.len() * N);
+        // Before the first entry all remain zero.
+        let first = values.iter().position(|value| *value != [0.0; N]).unwrap_or(values.len());
+        for column in first..values.len() {
+            let mut value = values[column];
+            fill.upper(column).for_each(|entry| take(&mut value, self.upper[entry], &values[fill.upper_rows[entry]]));
+            values[column] = value.map(|value| value / self.pivots[column]);
+        }
     }
 }

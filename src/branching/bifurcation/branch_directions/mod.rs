@@ -38,7 +38,7 @@ pub use second_order_by_contact_mode::{SecondOrderFindings, in_each_mode};
 
 use crate::algebra::{nearest_null_space, null_space_as_scaled};
 use crate::branching::bifurcation::branch_directions::tolerances::{
-    COINCIDENCE_COSINE, CURVATURE_TOLERANCE, DOUBTFUL_MARGIN, SEARCH_RADIUS,
+    COINCIDENCE_COSINE, CURVATURE_TOLERANCE, DERIVATIVE_ROUND_OFF, DOUBTFUL_MARGIN, SEARCH_RADIUS,
 };
 use crate::branching::bifurcation::singularity::null_vectors::NullVectors;
 use crate::branching::bifurcation::singularity::tolerances::SINGULAR_PIVOT;
@@ -386,7 +386,8 @@ impl BranchingPoint<'_> {
         let size = left.amax() * derivative.amax();
         let weights = if mixed.abs() > CURVATURE_TOLERANCE * size {
             let ratio = -0.5 * pure / mixed;
-            [1.0, if ratio.abs() <= CURVATURE_TOLERANCE { 0.0 } else { ratio }]
+            let is_round_off = pure.abs() <= DERIVATIVE_ROUND_OFF * size;
+            [1.0, if is_round_off || ratio.abs() <= CURVATURE_TOLERANCE { 0.0 } else { ratio }]
         } else {
             // The eigenvalue does not cross at first order.
             *degenerate = true;

@@ -1,12 +1,12 @@
-//! Solves with the factors `L D Lᵀ` for several right-hand sides together.
+//! Forward and backward substitution with the factors `L D Lᵀ`, for one or several right-hand sides.
 //!
-//! The values of eight right-hand sides at one unknown lie side by side: each entry of `L`, once read, serves all
-//! eight, and an unknown of a block's pattern is one cache line. In the forward substitution a column at which all are
+//! The values of the right-hand sides at one unknown lie side by side, in the elimination order: each entry of `L`, once
+//! read, serves all of them, and eight values are one cache line. In the forward substitution a column at which all are
 //! zero is skipped, so that right-hand sides with few entries, as the borders of contacts have, visit only the columns
 //! that depend on them (J. R. Gilbert, T. Peierls, SIAM J. Sci. Stat. Comput. 9 (1988) 862, doi:10.1137/0909058).
 //!
-//! By hand, since the library solves for one column after another where the factor is not in blocks, and gathers rows
-//! across its columns where it is; `cargo bench --bench elimination -- solves` has the ratio.
+//! By hand, since the library has no substitution by itself, solves for one column after another where the factor is not
+//! in blocks, and gathers rows across its columns where it is; `cargo bench --bench elimination -- solves` has the ratio.
 
 use crate::algebra::sparse::factors::elimination_order::Symbolic;
 use crate::resources::budget;
@@ -14,12 +14,9 @@ use faer::sparse::linalg::cholesky::SymbolicCholeskyRaw;
 use std::ops::Range;
 
 /// Number of right-hand sides solved for together.
-const TOGETHER: usize = 8;
+pub(crate) const TOGETHER: usize = 8;
 /// Number of columns of a block whose updates of the rows below are made in one sweep.
 const SWEEP: usize = 4;
-
-/// The values of the right-hand sides at one unknown.
-type Values = [f64; TOGETHER];
 
 /// Columns of `L` with the same rows below; on their diagonal the pivots in `D`.
 struct ColumnBlock<'a> {
@@ -29,21 +26,104 @@ struct ColumnBlock<'a> {
     entries: &'a [f64],
 }
 
+/// Which of the substitutions.
+#[derive(Clone, Copy)]
+enum Sweep {
+    /// With `L`.
+    Forward,
+    /// With `D Lᵀ`.
+    Backward,
+}
+
+/// The factors `L D Lᵀ` of the scaled matrix.
+#[derive(Clone, Copy)]
+pub(crate) struct Substitutions<'a> {
+    symbolic: &'a Symbolic,
+    factors: &'a [f64],
+}
+
+impl<'a> Substitutions<'a> {
+    pub fn new(symbolic: &'a Symbolic, factors: &'a [f64]) -> Self {
+        Self { symbolic, factors }
+    }
+
+    /// Solves with `L`; values in the elimination order.
+    pub fn solve_lower<const N: usize>(self, values: &mut [[f64; N]]) {
+        self.sweep(Sweep::Forward, values);
+    }
+
+    /// Solves with `D Lᵀ`; values in the elimination order.
+    pub fn solve_upper<const N: usize>(self, values: &mut [[f64; N]]) {
+        self.sweep(Sweep::Backward, values);
+    }
+
+    /// Solves with `L D`; values in the elimination order.
+    pub fn solve_upper_transposed<const N: usize>(self, values: &mut [[f64; N]]) {
+        self.solve_lower(values);
+        for (values, pivot) in values.iter_mut().zip(self.pivots()) {
+            values.iter_mut().for_each(|value| *value /= pivot);
+        }
+    }
+
+    fn sweep<const N: usize>(self, which: Sweep, values: &mut [[f64; N]]) {
+        budget::spend(self.factors.len() * N);
+        pulp::Arch::new().dispatch(Substitution { factors: self, which, values });
+    }
+
+    /// The number of blocks; single columns where the factor is not in blocks.
+    #[inline(always)]
+    fn blocks(self) -> usize {
+        match self.symbolic.cholesky.raw() {
+            SymbolicCholeskyRaw::Simplicial(columns) => columns.col_ptr().len() - 1,
+            SymbolicCholeskyRaw::Supernodal(blocks) => blocks.n_supernodes(),
+        }
+    }
+
+    #[inline(always)]
+    fn block(self, which: usize) -> ColumnBlock<'a> {
+        match self.symbolic.cholesky.raw() {
+            SymbolicCholeskyRaw::Simplicial(columns) => {
+                let (start, end) = (columns.col_ptr()[which], columns.col_ptr()[which + 1]);
+                ColumnBlock {
+                    columns: which..which + 1,
+                    below: &columns.row_idx()[start + 1..end],
+                    entries: &self.factors[start..end],
+                }
+            }
+            SymbolicCholeskyRaw::Supernodal(blocks) => {
+                let columns = blocks.supernode_begin()[which]..blocks.supernode_end()[which];
+                let below = blocks.supernode(which).pattern();
+                let first = blocks.col_ptr_for_val()[which];
+                let entries = &self.factors[first..][..columns.len() * (columns.len() + below.len())];
+                ColumnBlock { columns, below, entries }
+            }
+        }
+    }
+
+    /// The pivots in `D`, in the elimination order.
+    pub fn pivots(self) -> impl Iterator<Item = f64> + 'a {
+        (0..self.blocks()).flat_map(move |which| {
+            let block = self.block(which);
+            let rows = block.rows();
+            (0..block.columns.len()).map(move |column| block.entries[column * rows + column])
+        })
+    }
+}
+
 /// Solves for consecutive right-hand sides, overwritten by the solutions.
 pub(super) fn solve(symbolic: &Symbolic, factors: &[f64], scales: &[f64], right_hand_sides: &mut [f64]) {
     let size = scales.len();
     let order = symbolic.cholesky.perm().map(|perm| perm.arrays().0);
     let unknown = |place: usize| order.map_or(place, |order| order[place]);
-    let blocks = blocks(symbolic, factors);
-    let mut values: Vec<Values> = vec![[0.0; TOGETHER]; size];
-    let mut sums: Vec<Values> = Vec::new();
+    let substitutions = Substitutions::new(symbolic, factors);
+    let mut values = vec![[0.0; TOGETHER]; size];
     for right in right_hand_sides.chunks_mut(size * TOGETHER) {
-        budget::spend(2 * factors.len() * right.len().div_ceil(size));
         for (place, values) in values.iter_mut().enumerate() {
             let unknown = unknown(place);
             *values = std::array::from_fn(|lane| right.get(lane * size + unknown).map_or(0.0, |v| v * scales[unknown]));
         }
-        pulp::Arch::new().dispatch(Substitution { blocks: &blocks, values: &mut values, sums: &mut sums });
+        substitutions.solve_lower(&mut values);
+        substitutions.solve_upper(&mut values);
         for (place, values) in values.iter().enumerate() {
             let unknown = unknown(place);
             for (lane, value) in values.iter().enumerate() {
@@ -55,47 +135,32 @@ pub(super) fn solve(symbolic: &Symbolic, factors: &[f64], scales: &[f64], right_
     }
 }
 
-/// Both substitutions, by the widest instructions of the machine: the sums are the same with any.
-struct Substitution<'a> {
-    blocks: &'a [ColumnBlock<'a>],
-    values: &'a mut [Values],
-    sums: &'a mut Vec<Values>,
+/// A substitution by the widest instructions of the machine: the sums are the same with any.
+struct Substitution<'a, 'v, const N: usize> {
+    factors: Substitutions<'a>,
+    which: Sweep,
+    values: &'v mut [[f64; N]],
 }
 
-impl pulp::NullaryFnOnce for Substitution<'_> {
+impl<const N: usize> pulp::NullaryFnOnce for Substitution<'_, '_, N> {
     type Output = ();
 
-    // A function that is called rather than inlined would be compiled for the least of machines.
     #[inline(always)]
     fn call(self) {
-        for block in self.blocks {
-            block.forward(self.values, self.sums);
+        let mut sums = Vec::new();
+        // Loops, as closures would not be compiled for the widest instructions.
+        match self.which {
+            Sweep::Forward => {
+                for which in 0..self.factors.blocks() {
+                    self.factors.block(which).forward(self.values, &mut sums);
+                }
+            }
+            Sweep::Backward => {
+                for which in (0..self.factors.blocks()).rev() {
+                    self.factors.block(which).backward(self.values, &mut sums);
+                }
+            }
         }
-        for block in self.blocks.iter().rev() {
-            block.backward(self.values, self.sums);
-        }
-    }
-}
-
-/// The blocks of the factor in the elimination order; single columns where the factor is not in blocks.
-fn blocks<'a>(symbolic: &'a Symbolic, factors: &'a [f64]) -> Vec<ColumnBlock<'a>> {
-    match symbolic.cholesky.raw() {
-        SymbolicCholeskyRaw::Simplicial(simplicial) => (simplicial.col_ptr().windows(2).enumerate())
-            .map(|(column, ends)| ColumnBlock {
-                columns: column..column + 1,
-                below: &simplicial.row_idx()[ends[0] + 1..ends[1]],
-                entries: &factors[ends[0]..ends[1]],
-            })
-            .collect(),
-        SymbolicCholeskyRaw::Supernodal(blocks) => (0..blocks.n_supernodes())
-            .map(|block| {
-                let columns = blocks.supernode_begin()[block]..blocks.supernode_end()[block];
-                let below = blocks.supernode(block).pattern();
-                let first = blocks.col_ptr_for_val()[block];
-                let entries = &factors[first..][..columns.len() * (columns.len() + below.len())];
-                ColumnBlock { columns, below, entries }
-            })
-            .collect(),
     }
 }
 
@@ -106,13 +171,13 @@ impl ColumnBlock<'_> {
 
     /// Takes what the block's unknowns contribute to the rows below from these.
     #[inline(always)]
-    fn forward(&self, values: &mut [Values], sums: &mut Vec<Values>) {
+    fn forward<const N: usize>(&self, values: &mut [[f64; N]], sums: &mut Vec<[f64; N]>) {
         let rows = self.rows();
         let own = &mut values[self.columns.clone()];
         let mut is_zero = true;
         for column in 0..own.len() {
             let (value, entries) = (own[column], &self.entries[column * rows..][..rows]);
-            if value == [0.0; TOGETHER] {
+            if value == [0.0; N] {
                 continue;
             }
             is_zero = false;
@@ -130,7 +195,7 @@ impl ColumnBlock<'_> {
             return;
         }
         sums.clear();
-        sums.resize(self.below.len(), [0.0; TOGETHER]);
+        sums.resize(self.below.len(), [0.0; N]);
         for (sweep, own) in own.chunks(SWEEP).enumerate() {
             self.add_sweep(sweep, own, sums);
         }
@@ -141,13 +206,13 @@ impl ColumnBlock<'_> {
 
     /// Adds the products of a few columns with their values to the sums of the rows below.
     #[inline(always)]
-    fn add_sweep(&self, sweep: usize, own: &[Values], sums: &mut [Values]) {
+    fn add_sweep<const N: usize>(&self, sweep: usize, own: &[[f64; N]], sums: &mut [[f64; N]]) {
         let (rows, count) = (self.rows(), self.columns.len());
         let column = |number: usize| &self.entries[(sweep * SWEEP + number) * rows + count..][..self.below.len()];
         if let [a, b, c, d] = own {
             let entries = column(0).iter().zip(column(1)).zip(column(2)).zip(column(3));
             for (sum, (((of_a, of_b), of_c), of_d)) in sums.iter_mut().zip(entries) {
-                for lane in 0..TOGETHER {
+                for lane in 0..N {
                     sum[lane] += (of_a * a[lane] + of_b * b[lane]) + (of_c * c[lane] + of_d * d[lane]);
                 }
             }
@@ -155,14 +220,14 @@ impl ColumnBlock<'_> {
         }
         for (number, value) in own.iter().enumerate() {
             for (sum, entry) in sums.iter_mut().zip(column(number)) {
-                (0..TOGETHER).for_each(|lane| sum[lane] += entry * value[lane]);
+                (0..N).for_each(|lane| sum[lane] += entry * value[lane]);
             }
         }
     }
 
     /// Divides by the pivots and takes what the rows below contribute from the block's unknowns.
     #[inline(always)]
-    fn backward(&self, values: &mut [Values], gathered: &mut Vec<Values>) {
+    fn backward<const N: usize>(&self, values: &mut [[f64; N]], gathered: &mut Vec<[f64; N]>) {
         let (rows, count) = (self.rows(), self.columns.len());
         gathered.clear();
         gathered.extend(self.below.iter().map(|row| values[*row]));
@@ -172,7 +237,7 @@ impl ColumnBlock<'_> {
             for (number, (value, sum)) in own.iter_mut().zip(&sums).enumerate() {
                 let column = sweep * SWEEP + number;
                 let pivot = self.entries[column * rows + column];
-                (0..TOGETHER).for_each(|lane| value[lane] = value[lane] / pivot - sum[lane]);
+                (0..N).for_each(|lane| value[lane] = value[lane] / pivot - sum[lane]);
             }
         }
         for column in (0..count).rev() {
@@ -185,15 +250,15 @@ impl ColumnBlock<'_> {
 
     /// The sums over the rows below of a few columns.
     #[inline(always)]
-    fn sums_below(&self, sweep: usize, columns: usize, gathered: &[Values]) -> [Values; SWEEP] {
+    fn sums_below<const N: usize>(&self, sweep: usize, columns: usize, gathered: &[[f64; N]]) -> [[f64; N]; SWEEP] {
         let (rows, count) = (self.rows(), self.columns.len());
         let column = |number: usize| &self.entries[(sweep * SWEEP + number) * rows + count..][..gathered.len()];
-        let mut sums = [[0.0; TOGETHER]; SWEEP];
+        let mut sums = [[0.0; N]; SWEEP];
         if columns == SWEEP {
             let [a, b, c, d] = &mut sums;
             let entries = column(0).iter().zip(column(1)).zip(column(2)).zip(column(3));
             for (row, (((of_a, of_b), of_c), of_d)) in gathered.iter().zip(entries) {
-                for lane in 0..TOGETHER {
+                for lane in 0..N {
                     a[lane] += of_a * row[lane];
                     b[lane] += of_b * row[lane];
                     c[lane] += of_c * row[lane];
@@ -204,16 +269,17 @@ impl ColumnBlock<'_> {
         }
         for (number, sum) in sums.iter_mut().take(columns).enumerate() {
             for (row, entry) in gathered.iter().zip(column(number)) {
-                (0..TOGETHER).for_each(|lane| sum[lane] += entry * row[lane]);
+                (0..N).for_each(|lane| sum[lane] += entry * row[lane]);
             }
         }
         sums
     }
 }
 
+/// Subtracts a multiple of values.
 #[inline(always)]
-fn take(from: &mut Values, entry: f64, value: &Values) {
-    for lane in 0..TOGETHER {
+pub(super) fn take<const N: usize>(from: &mut [f64; N], entry: f64, value: &[f64; N]) {
+    for lane in 0..N {
         from[lane] -= entry * value[lane];
     }
 }
