@@ -82,7 +82,10 @@ impl StopReason {
         match self {
             Self::StagesCompleted => "every stage reached its end",
             Self::MaxIncrements => "the number of increments asked for was reached",
-            Self::Mechanism => "what follows is a mechanism: a motion that no element resists",
+            Self::Mechanism => {
+                "what follows is a mechanism: a motion that no element, support or closed contact resists (open contacts \
+                 hold nothing)"
+            }
             Self::NoDirection => {
                 "no quasi-static continuation exists: from here the structure can only move dynamically"
             }
@@ -97,7 +100,8 @@ impl StopReason {
                  meet in one edge, which is not available"
             }
             Self::ContactViolated => {
-                "no step of at least arc_length.min leads to a point that keeps to the laws of contact and friction"
+                "no step of at least arc_length.min leads to a point that keeps to the laws of contact and friction; where a \
+                 node meets a corner or the edge of an obstacle, a finer mesh or a rounded corner helps"
             }
             Self::SurfaceEnd => "a node in contact has slid to the end of the surface that it touches",
             Self::ModeLimit => "more contact modes than max_modes would have to be examined to go on",

@@ -60,7 +60,7 @@ def request(kind, elements):
         model["supports"] = {"n0": ["x", "rz"]}
         model["obstacles"] = {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}}
         model["contacts"] = [{"node": f"n{last}", "obstacle": "floor", "friction": 0.8}]
-    return {"model": model, "analysis": {"max_increments": 3000, "record": {"nodes": [f"n{loaded}"]}}}
+    return {"model": model, "analysis": {"max_increments": 3000, "record": {"nodes": [f"n{loaded}"], "elements": "none"}}}
 
 
 def processor_time_of_children():
