@@ -10,6 +10,7 @@ use arcslip::model::request::Method;
 use arcslip::resources::cancel::CancelFlag;
 use arcslip::result::increment::PointKind::{NonsmoothLimit, SmoothLimit};
 use arcslip::result::increment::{Direction, Increment, Status};
+use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -193,12 +194,8 @@ fn both_falling_continuations_at_the_slip_are_listed_and_followed() {
     }
 }
 
-/// The whole arch slips at the load of its half. Its two thrusts balance, so that both feet are on their cones while either
-/// or both slip: how the slip is shared is left open. The ways on which one foot slips are listed beside the way back.
-/// Load and drop fall along them as those of the half do. Where both slip, the arch may move sideways freely.
-#[test]
-fn a_whole_arch_slips_as_its_half_does() {
-    let half = RoughArch::right(0.8, 1e5).model(10);
+/// The whole arch of a half of so many elements, both feet on the floor and free.
+fn whole_arch(half: &Value, friction: f64) -> Value {
     let mut whole = half.clone();
     let nodes = half["nodes"].as_object().expect("nodes");
     let mirror = |name: &str| if name == "n0" { name.to_owned() } else { name.replace('n', "m") };
@@ -217,11 +214,20 @@ fn a_whole_arch_slips_as_its_half_does() {
         beam["nodes"] = json!(names);
         beams.push(beam);
     }
+    let foot = format!("n{}", nodes.len() - 1);
+    let on_floor = |node: String| json!({"node": node, "obstacle": "floor", "friction": friction});
     whole["supports"] = json!({});
-    whole["contacts"] = json!([
-        {"node": "n20", "obstacle": "floor", "friction": 0.8}, {"node": "m20", "obstacle": "floor", "friction": 0.8}
-    ]);
+    whole["contacts"] = json!([on_floor(foot.clone()), on_floor(mirror(&foot))]);
     whole["stages"][0]["forces"]["n0"] = json!([0, -1]);
+    whole
+}
+
+/// The whole arch slips at the load of its half. Its two thrusts balance, so that both feet are on their cones while either
+/// or both slip: how the slip is shared is left open. The ways on which one foot slips are listed beside the way back.
+/// Load and drop fall along them as those of the half do. Where both slip, the arch may move sideways freely.
+#[test]
+fn a_whole_arch_slips_as_its_half_does() {
+    let whole = whole_arch(&RoughArch::right(0.8, 1e5).model(10), 0.8);
     let request = request(whole, json!({"limit_points": 1}));
     let traced = traced(&request);
     let slip = traced.increments.last().expect("an end");
@@ -231,8 +237,9 @@ fn a_whole_arch_slips_as_its_half_does() {
     close(drop_of(slip), onset.drop, 1e-4, "drop at the onset");
     let mut request = request;
     request.model.stages[0].until = None;
-    let directions = judged(&request).increments[slip.index as usize].directions.clone().expect("directions");
-    assert_eq!(directions.len() % 2, 0, "{directions:?}");
+    let slip = &judged(&request).increments[slip.index as usize];
+    let directions = slip.directions.clone().expect("directions");
+    assert!(directions.len() == 3 && slip.point.degenerate, "{directions:?}");
     let one_slips = |direction: &Direction| direction.contacts.contains(&Status::Stick) && !direction.retrace;
     assert_eq!(directions.iter().filter(|direction| one_slips(direction)).count(), 2, "{directions:?}");
     let half = traced_half(10);
@@ -250,6 +257,28 @@ fn a_whole_arch_slips_as_its_half_does() {
             .find(|(above, below)| above.load_factor >= end.load_factor && below.load_factor <= end.load_factor)
             .expect("a load of the half");
         assert!(drop_of(end) <= drop_of(above) && drop_of(end) >= drop_of(below), "{}", drop_of(end));
+    }
+}
+
+/// Both feet are on their cones from the start, and any share of the slip would do: of that family the edges are listed, on
+/// which one foot sticks, whatever the round-off of a mesh adds. The path takes one of them, along which load and drop are
+/// those of the half.
+#[test]
+fn feet_that_slip_from_the_start_share_their_slip_in_any_mesh() {
+    for elements in [3, 5, 6, 7, 9, 11, 13, 20] {
+        for friction in [0.2, 0.4] {
+            let half = RoughArch::right(friction, 1e4).model(elements);
+            let until = || json!({"load_above": 0.8});
+            let expected = traced(&request(half.clone(), until()));
+            let found = judged(&request(whole_arch(&half, friction), until()));
+            assert_eq!(found.report.stop_reason, StopReason::StagesCompleted, "{elements} {friction}");
+            let start = found.increments[0].directions.as_deref().expect("directions");
+            let loaded = start.iter().filter(|direction| direction.load_rate > 1e-6);
+            assert!(loaded.clone().all(|direction| direction.contacts.contains(&Status::Stick)), "{start:?}");
+            assert_eq!(loaded.count(), 2, "{elements} {friction}");
+            let [own, other] = [&found, &expected].map(|path| path.increments.last().expect("an end"));
+            close(drop_of(own), drop_of(other), 1e-8, "drop");
+        }
     }
 }
 

@@ -1,15 +1,16 @@
 //! Directions of first order: the rate, and the contact modes compatible with it.
 
 use crate::algebra::null_space;
-use crate::branching::directions::tolerances::{MERGE_TOLERANCE, WEAK_MARGIN};
+use crate::branching::directions::tolerances::{FRICTION_ROUND_OFF, MERGE_TOLERANCE, WEAK_MARGIN};
 use crate::mechanics::contact::vector::{Vector, add, size};
-use crate::mechanics::contact::{ContactPair, Mode};
+use crate::mechanics::contact::{ContactPair, Mode, Reaction};
 use crate::mechanics::equations::tolerances::RANK_TOLERANCE;
 use crate::mechanics::equations::{ModeSystem, matrix, rate_recovery};
 use crate::mechanics::multi_contact::changeable_contacts::Standing;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cached_factorisation::CachedFactorisation;
+use itertools::Itertools;
 
 /// A feasible direction.
 #[derive(Debug, Clone)]
@@ -52,6 +53,10 @@ pub struct FoundDirections {
     /// A node is in contact with several obstacles in a configuration that is not available.
     pub corner_not_available: bool,
 }
+
+/// Largest number of candidates among which inner members of families are sought, in each with every pair of the others.
+/// Longer lists are those of several contacts that change independently, which are isolated.
+const MOST_COMPARED: usize = 24;
 
 /// The modes in which every contact that can change sticks, or remains closed where it has no friction.
 pub(crate) fn held_modes(loading: Loading<'_>, standings: &[Standing]) -> Vec<Mode> {
@@ -104,6 +109,64 @@ pub(crate) fn merge(found: &mut FoundDirections, candidate: CandidateDirection) 
         }
     }
     found.candidates.push(candidate);
+}
+
+/// Removes candidates that are combinations of two others with positive weights, in motions and forces; returns whether
+/// there were any.
+///
+/// Where a whole family of directions continues the path (both feet of a frame slip, and how the slip is shared is left
+/// open), the equations of its inner members are singular: round-off alone names one of them, and no step follows it.
+/// The edges of the family remain.
+pub(crate) fn remove_inner(candidates: &mut Vec<CandidateDirection>) -> bool {
+    if !(3..=MOST_COMPARED).contains(&candidates.len()) {
+        return false;
+    }
+    let is_inner = |which: usize| {
+        let others = (0..candidates.len()).filter(|other| *other != which);
+        others
+            .array_combinations()
+            .any(|[first, second]| is_between(&candidates[which], &candidates[first], &candidates[second]))
+    };
+    let keeps: Vec<bool> = (0..candidates.len()).map(|which| !is_inner(which)).collect();
+    let removes = keeps.contains(&false);
+    let mut keeps = keeps.into_iter();
+    candidates.retain(|_| keeps.next().unwrap_or(true));
+    removes
+}
+
+/// Whether a candidate is the sum of positive multiples of two others along which the load changes in the same sense: a
+/// motion without load, such as a rigid one, is no edge of a family of loaded ones.
+fn is_between(inner: &CandidateDirection, first: &CandidateDirection, second: &CandidateDirection) -> bool {
+    let is_loaded = |one: &CandidateDirection| one.rate.load * inner.rate.load.signum() > MERGE_TOLERANCE;
+    // In the inner member's modes, at most at their edge: a contact that slips in them may stick.
+    let is_within = |edge: &CandidateDirection| {
+        inner.modes.iter().zip(&edge.modes).all(|(own, of_edge)| {
+            own.continues(*of_edge) || (matches!(own, Mode::Slip { .. }) && *of_edge == Mode::Stick)
+        })
+    };
+    if ![first, second].into_iter().all(|edge| is_loaded(edge) && is_within(edge)) {
+        return false;
+    }
+    let cosine = first.rate.product(&second.rate);
+    let parts = [&first.rate, &second.rate].map(|rate| rate.product(&inner.rate));
+    let determinant = 1.0 - cosine * cosine;
+    if determinant <= MERGE_TOLERANCE {
+        return false;
+    }
+    let weights = [(parts[0] - cosine * parts[1]) / determinant, (parts[1] - cosine * parts[0]) / determinant];
+    if weights.iter().any(|weight| *weight <= MERGE_TOLERANCE) {
+        return false;
+    }
+    let mut rest = inner.rate.clone();
+    rest.add(&first.rate, -weights[0]);
+    rest.add(&second.rate, -weights[1]);
+    // Friction may be small beside all other forces: each is compared with itself.
+    let least = FRICTION_ROUND_OFF * inner.rate.largest_reaction();
+    let is_alike = |(rest, own): (&Reaction, &Reaction)| {
+        rest.normal.abs() <= MERGE_TOLERANCE * own.normal.abs() + least
+            && size(&rest.tangential) <= MERGE_TOLERANCE * size(&own.tangential) + least
+    };
+    rest.size() <= MERGE_TOLERANCE && rest.reactions.iter().zip(&inner.rate.reactions).all(is_alike)
 }
 
 /// Largest difference between forces and a multiple of others, relative to the largest of all.

@@ -20,6 +20,11 @@ pub(crate) const WEAK_MARGIN: f64 = 1e-9;
 /// that the bound can hardly be smaller; distinct modes differ by far larger angles.
 pub(crate) const MERGE_TOLERANCE: f64 = 1e-7;
 
+/// Rates of a contact's forces, relative to the largest, that are round-off where directions of one family are compared:
+/// some hundred times that of rates of about 1. Chains whose friction is 1e-11 have directions of their own that differ
+/// in friction alone.
+pub(crate) const FRICTION_ROUND_OFF: f64 = 1e-13;
+
 /// Load rates (of unit arc length) up to which the load is stationary. The value is the error 1e-9 that an increment
 /// may have: the sign of a smaller load rate at first order may be rounding or the remainder of the location of a limit
 /// point, and the load rate after a trial step decides.

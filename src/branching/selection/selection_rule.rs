@@ -11,7 +11,7 @@
 //! with the dissipation `D = -Σ r_t·u̇_t`: so `Π̇ = -D - ṡ f·u`, per unit arc length.
 
 use crate::branching::bifurcation::branch_directions::{SecondOrderFindings, SingularPoint};
-use crate::branching::directions::candidate::{FoundDirections, is_mechanism};
+use crate::branching::directions::candidate::{FoundDirections, is_mechanism, remove_inner};
 use crate::branching::directions::feasible_direction::{
     DirectionChoice, PriorMotion, Rules, Selection, mark_retrace, potential_rate, sign_of,
 };
@@ -52,7 +52,8 @@ pub fn list(
         PriorMotion::StageStart { .. } => None,
     };
     let mut found = directions(loading, state, standings, incoming, rules.effort);
-    let candidates = std::mem::take(&mut found.candidates);
+    let mut candidates = std::mem::take(&mut found.candidates);
+    found.degenerate |= remove_inner(&mut candidates);
     let mut options = Vec::with_capacity(candidates.len());
     let holds_exactly = || rules.effort.certify && linearity::is_linear(loading);
     for candidate in candidates {
