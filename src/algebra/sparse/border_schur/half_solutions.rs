@@ -48,17 +48,17 @@ impl Group {
 }
 
 impl HalfSolutions {
-    /// Solves by `solve` for borders that `place` puts into the elimination order and scales.
+    /// Solves by `solve` for borders that `place` puts into the elimination order and scales; `work` is zero before and
+    /// after.
     pub fn new(
         borders: &[SparseEntries],
-        size: usize,
+        work: &mut [[f64; TOGETHER]],
         place: impl Fn(usize, f64) -> (usize, f64),
         solve: impl Fn(&mut [[f64; TOGETHER]]),
     ) -> Self {
         let mut held = Taken::default();
-        let mut work = vec![[0.0; TOGETHER]; size];
         let mut group = |borders: &[SparseEntries]| {
-            let group = Group::new(borders, &mut work, &place, &solve);
+            let group = Group::new(borders, work, &place, &solve);
             held.add::<[f64; TOGETHER + 1]>(group.places.len());
             group
         };

@@ -141,8 +141,9 @@ impl BorderSchurComplement {
         (given..count).for_each(|raise| corner[(raise, raise)] = -1.0);
         let pivots = factor.pivots();
         let placed = |unknown, value| factor.placed(unknown, value);
-        let column_halves = HalfSolutions::new(&columns, size, placed, |values| factor.solve_lower(values));
-        let row_halves = HalfSolutions::new(&rows, size, placed, |values| factor.solve_upper_transposed(values));
+        let mut work = vec![[0.0; TOGETHER]; size];
+        let column_halves = HalfSolutions::new(&columns, &mut work, placed, |values| factor.solve_lower(values));
+        let row_halves = HalfSolutions::new(&rows, &mut work, placed, |values| factor.solve_upper_transposed(values));
         let complement = Complement::new(&corner, &row_halves, &column_halves, &pivots)?;
         Some(Self { factor, size, rows, corner, pivots, column_halves, row_halves, complement, given })
     }
@@ -199,8 +200,9 @@ impl BorderSchurComplement {
             values[self.factor.place(unknown)] = std::array::from_fn(given);
         }
         self.factor.solve_lower(values);
+        let mut by_row = self.row_halves.products(values);
         let mut weights = DMatrix::zeros(self.rows.len(), count);
-        for (row, products) in self.row_halves.products(values).iter().enumerate() {
+        for (row, products) in by_row.iter().enumerate() {
             for (lane, product) in products.iter().enumerate().take(count) {
                 let given = if row < self.given { lower[lane * self.given + row] } else { 0.0 };
                 weights[(row, lane)] = given - product;
@@ -209,8 +211,9 @@ impl BorderSchurComplement {
         if !self.complement.solve(&mut weights) {
             return false;
         }
-        let by_row = |row: usize| std::array::from_fn(|lane| if lane < count { weights[(row, lane)] } else { 0.0 });
-        let by_row: Vec<[f64; N]> = (0..self.rows.len()).map(by_row).collect();
+        for (row, values) in by_row.iter_mut().enumerate() {
+            *values = std::array::from_fn(|lane| if lane < count { weights[(row, lane)] } else { 0.0 });
+        }
         self.column_halves.take(&by_row, values);
         self.factor.solve_upper(values);
         for unknown in 0..self.size {

@@ -28,7 +28,7 @@ struct ColumnBlock<'a> {
 
 /// Which of the substitutions.
 #[derive(Clone, Copy)]
-enum Sweep {
+enum Pass {
     /// With `L`.
     Forward,
     /// With `D Lᵀ`.
@@ -49,12 +49,12 @@ impl<'a> Substitutions<'a> {
 
     /// Solves with `L`; values in the elimination order.
     pub fn solve_lower<const N: usize>(self, values: &mut [[f64; N]]) {
-        self.sweep(Sweep::Forward, values);
+        self.pass(Pass::Forward, values);
     }
 
     /// Solves with `D Lᵀ`; values in the elimination order.
     pub fn solve_upper<const N: usize>(self, values: &mut [[f64; N]]) {
-        self.sweep(Sweep::Backward, values);
+        self.pass(Pass::Backward, values);
     }
 
     /// Solves with `L D`; values in the elimination order.
@@ -65,7 +65,7 @@ impl<'a> Substitutions<'a> {
         }
     }
 
-    fn sweep<const N: usize>(self, which: Sweep, values: &mut [[f64; N]]) {
+    fn pass<const N: usize>(self, which: Pass, values: &mut [[f64; N]]) {
         budget::spend(self.factors.len() * N);
         pulp::Arch::new().dispatch(Substitution { factors: self, which, values });
     }
@@ -138,7 +138,7 @@ pub(super) fn solve(symbolic: &Symbolic, factors: &[f64], scales: &[f64], right_
 /// A substitution by the widest instructions of the machine: the sums are the same with any.
 struct Substitution<'a, 'v, const N: usize> {
     factors: Substitutions<'a>,
-    which: Sweep,
+    which: Pass,
     values: &'v mut [[f64; N]],
 }
 
@@ -150,12 +150,12 @@ impl<const N: usize> pulp::NullaryFnOnce for Substitution<'_, '_, N> {
         let mut sums = Vec::new();
         // Loops, as closures would not be compiled for the widest instructions.
         match self.which {
-            Sweep::Forward => {
+            Pass::Forward => {
                 for which in 0..self.factors.blocks() {
                     self.factors.block(which).forward(self.values, &mut sums);
                 }
             }
-            Sweep::Backward => {
+            Pass::Backward => {
                 for which in (0..self.factors.blocks()).rev() {
                     self.factors.block(which).backward(self.values, &mut sums);
                 }
