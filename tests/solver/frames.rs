@@ -6,7 +6,7 @@ use arcslip::check::scenes::beams::RoughArch;
 use arcslip::continuation::path::iterator::Path;
 use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
-use arcslip::model::request::Method;
+use arcslip::model::request::{Method, Selection};
 use arcslip::resources::cancel::CancelFlag;
 use arcslip::result::increment::PointKind::{NonsmoothLimit, SmoothLimit};
 use arcslip::result::increment::{Direction, Increment, Status};
@@ -279,6 +279,41 @@ fn feet_that_slip_from_the_start_share_their_slip_in_any_mesh() {
             let [own, other] = [&found, &expected].map(|path| path.increments.last().expect("an end"));
             close(drop_of(own), drop_of(other), 1e-8, "drop");
         }
+    }
+}
+
+/// A clamped beam is laid flat on a rough floor, pushed along it, and lifted at its end. While it is lifted the nodes that
+/// still lie hardly move along the floor: many are on their cones without slip to first order, and some so close to it that
+/// they reach it within the next step. A path goes on in any mesh.
+#[test]
+fn a_beam_that_is_lifted_off_a_rough_floor_finds_its_way_in_any_mesh() {
+    for elements in [36, 38, 40, 44] {
+        let nodes: BTreeMap<String, Value> =
+            (0..=elements).map(|k| (format!("n{k}"), json!([2.0 * k as f64 / elements as f64, 0.02]))).collect();
+        let beam = |k: usize| {
+            let ends = [format!("n{k}"), format!("n{}", k + 1)];
+            json!({"kind": "beam", "nodes": ends, "axial_stiffness": 1e4, "bending_stiffness": 1.0})
+        };
+        let weights: BTreeMap<String, Value> =
+            (1..=elements).map(|k| (format!("n{k}"), json!([0, -20.0 / elements as f64]))).collect();
+        let on_floor = |k: usize| json!({"node": format!("n{k}"), "obstacle": "floor", "friction": 0.3});
+        let last = format!("n{elements}");
+        let at_end = |force: [f64; 2]| BTreeMap::from([(last.clone(), json!(force))]);
+        let model = json!({
+            "dimension": 2, "nodes": nodes, "supports": {"n0": ["x", "y", "rz"]},
+            "elements": (0..elements).map(beam).collect::<Vec<_>>(),
+            "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}},
+            "contacts": (1..=elements).map(on_floor).collect::<Vec<_>>(),
+            "stages": [
+                {"name": "lay", "forces": weights, "until": {"load_above": 1}},
+                {"name": "push", "forces": at_end([-1.0, 0.0]), "until": {"load_above": 2}},
+                {"name": "lift", "forces": at_end([0.0, 1.0])}
+            ]
+        });
+        let until = json!({"displacement": {"node": last, "component": "y", "above": 0.5}});
+        let mut request = request(model, until);
+        request.analysis.selection = Selection::Straightest;
+        assert_eq!(traced(&request).report.stop_reason, StopReason::StagesCompleted, "{elements}");
     }
 }
 

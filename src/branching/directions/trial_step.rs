@@ -21,6 +21,7 @@ use crate::mechanics::equations::scaled_rows::scaled_rows;
 use crate::mechanics::equations::{ModeSystem, matrix, rate_recovery};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
+use crate::mechanics::problem::tolerances::CONTACT_TOLERANCE;
 use crate::resources::budget::{self, Taken};
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
@@ -213,6 +214,12 @@ impl Trial<'_> {
         Ok((modes, later_load))
     }
 
+    /// Whether more than one mode of a contact is compatible with the direction.
+    fn is_in_doubt(&self, contact: usize) -> bool {
+        let mut in_doubt = self.candidate.alternatives.iter().filter(|alternatives| alternatives.len() > 1);
+        in_doubt.any(|alternatives| alternatives.iter().flatten().any(|(one, _)| *one == contact))
+    }
+
     /// Checks only quantities that are zero at first order: any other end of the mode within the step is a later event.
     /// The step is short, so that such events usually lie beyond it: where many contacts change close together, a long
     /// step would assess a motion that does not occur.
@@ -230,8 +237,12 @@ impl Trial<'_> {
             let first = event_function.value(loading, modes, state, &candidate.rate);
             let tendency = event_function.slope(loading, modes, state, &candidate.rate);
             let most = if event_function.is_of_forces() { rates } else { 1.0 };
+            // What the standings hold settled is above zero by more than their tolerance: its end is a later event.
+            let contacts = contacts_of(loading, event_function);
+            let is_settled = !contacts.is_empty() && !contacts.iter().any(|contact| self.is_in_doubt(*contact));
+            let zero = if is_settled { CONTACT_TOLERANCE } else { FIRST_ORDER_TOLERANCE };
             if tendency.is_some_and(|slope| slope > FIRST_ORDER_TOLERANCE * most)
-                || event_function.is_above_zero(loading, state, first, FIRST_ORDER_TOLERANCE, forces)
+                || event_function.is_above_zero(loading, state, first, zero, forces)
             {
                 continue;
             }
@@ -262,7 +273,7 @@ impl Trial<'_> {
                 EventFunction::LoadRate { .. } | EventFunction::SurfaceEnd(_) | EventFunction::End(_) => CLEAR_SLOPE,
             };
             if last < -TRIAL_VIOLATION || grown < -clear {
-                culprits.extend(contacts_of(loading, event_function));
+                culprits.extend(contacts);
             }
             unclear |= grown <= clear;
         }
