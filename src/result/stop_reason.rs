@@ -101,7 +101,7 @@ impl StopReason {
             }
             Self::ContactViolated => {
                 "no step of at least arc_length.min leads to a point that keeps to the laws of contact and friction; where a \
-                 node meets a corner or the edge of an obstacle, a finer mesh or a rounded corner helps"
+                 node meets a corner or the edge of an obstacle, a finer mesh or a rounded corner may help"
             }
             Self::SurfaceEnd => "a node in contact has slid to the end of the surface that it touches",
             Self::ModeLimit => "more contact modes than max_modes would have to be examined to go on",

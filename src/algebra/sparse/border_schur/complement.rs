@@ -1,12 +1,13 @@
-//! The dense complement of the borders.
+//! The dense complement of the borders, `D - C K⁻¹ B = D - cᵀ b`, with the halves `b = L⁻¹ B` and `c = U⁻ᵀ Cᵀ`.
 
 use crate::algebra::sparse::border_schur::half_solutions::HalfSolutions;
 use nalgebra::{DMatrix, Dyn, LU};
 
-/// The factorised complement `D - C K⁻¹ B`, its rows and columns divided by the magnitudes of their terms.
+/// The factorised complement, its rows and columns divided by the magnitudes of their terms.
 ///
-/// With the halves `b = L⁻¹ B` and `c = U⁻ᵀ Cᵀ` a term is at most the product of the norms `Σ b²/|d|` and `Σ c² |d|`,
-/// `d` the pivots: the columns are divided by the former, the rows by the larger of the latter and their entries of `D`.
+/// By the inequality of Cauchy and Schwarz an entry of `cᵀ b` is at most the product of the norms `√(Σ b²/|d|)` and
+/// `√(Σ c² |d|)`, `d` the pivots: the columns are divided by the former, the rows by the larger of the latter and their
+/// entries of `D`.
 pub(super) struct Complement {
     row_scales: Vec<f64>,
     column_scales: Vec<f64>,
