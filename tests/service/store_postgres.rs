@@ -153,3 +153,17 @@ async fn a_line_that_was_cut_is_told_as_passing_and_comes_back() {
     assert_eq!(again.lease, claim.lease);
     assert!(store.claim("worker", MINUTE).await.expect("an answer").is_none(), "once");
 }
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_job_that_another_transaction_only_keeps_from_deletion_is_claimed_in_its_turn() {
+    let Some(postgres) = shared() else { return };
+    let url = postgres.database().await;
+    let store = store::open(Location::from(url.as_str())).await.expect("a store");
+    let first = queued(store.as_ref(), job(3)).await;
+    queued(store.as_ref(), job(3)).await;
+    let mut other = connected(&url).await;
+    let mut transaction = other.begin().await.expect("a transaction");
+    sqlx::query("SELECT id FROM jobs FOR KEY SHARE").fetch_all(&mut *transaction).await.expect("the jobs");
+    let claim = store.claim("worker", MINUTE).await.expect("an answer").expect("a job");
+    assert_eq!(claim.lease.job, first);
+}

@@ -14,7 +14,7 @@ impl Dialect for Postgres {
     const NOW: &'static str = "CAST(extract(epoch FROM statement_timestamp()) * 1000 AS BIGINT)";
     const CLOCK: &'static str = "CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT)";
     const WAITING: &'static str = "";
-    const FREE: &'static str = "FOR UPDATE SKIP LOCKED";
+    const FREE: &'static str = "FOR NO KEY UPDATE SKIP LOCKED";
     const THERE: &'static str = "FOR KEY SHARE";
     // Until the end of the transaction, which is the statement.
     const UNSYNCED: &'static str = ", set_config('synchronous_commit', 'off', true) AS unsynced";

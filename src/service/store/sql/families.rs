@@ -2,7 +2,7 @@
 
 use crate::service::store::contract::error::Result;
 use crate::service::store::sql::dialect::{Dialect, values};
-use crate::service::store::sql::engine::{Engine, Of, begin, reader};
+use crate::service::store::sql::engine::{Engine, Of, begin, give_up, reader};
 use crate::service::store::sql::followers::{self, Place};
 use crate::service::store::sql::rows;
 use crate::service::store::{NewFollower, Parent, Status};
@@ -46,11 +46,15 @@ async fn explore_next<E: Engine>(engine: &E, family: Uuid) -> Result<Option<u64>
         values![family],
     )
     .await?;
-    let (Some(limits), Some(next)) = (limits, next) else { return Ok(None) };
-    let status = rows::status(&next)?;
-    if !status.is_ended() {
+    let ended = match (limits, next) {
+        (Some(limits), Some(next)) => Some((rows::status(&next)?, limits, next)).filter(|(status, ..)| status.is_ended()),
+        _ => None,
+    };
+    let Some((status, limits, next)) = ended else {
+        // A transaction that is only dropped ends later, and a claim passes over the job that it has locked.
+        give_up(transaction).await;
         return Ok(None);
-    }
+    };
     let (job, generation) = (rows::id(&next, "id")?, rows::number(&next, "generation")?);
     let before = rows::number(&limits, "queued")?;
     let room = if generation < rows::number(&limits, "depth")? { rows::number(&limits, "max_jobs")? } else { before };
