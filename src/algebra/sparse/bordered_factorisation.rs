@@ -17,9 +17,9 @@ use crate::algebra::sparse::factors::ldl::SymmetricFactor;
 use crate::algebra::sparse::fallback_lu::WholeLu;
 use crate::algebra::sparse::nodal_elimination::{Elimination, Friction, Holdings};
 use crate::algebra::sparse::tolerances::{
-    ACCEPTED_BACKWARD_ERROR, CONVERGED_BACKWARD_ERROR, KNOWN_SOLUTION_ERROR, REGULAR_PIVOT_RATIO,
+    ACCEPTED_BACKWARD_ERROR, BORDER_VALUE_ERROR, CONVERGED_BACKWARD_ERROR, KNOWN_SOLUTION_ERROR, REGULAR_PIVOT_RATIO,
 };
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use std::sync::{Arc, OnceLock};
 
 /// The factorisation of a bordered system; see the module.
@@ -150,6 +150,29 @@ impl SparseFactorisation {
     /// Solves without refinement for `count` consecutive right-hand sides.
     pub fn solve_all_once(&self, values: &mut [f64], count: usize) -> bool {
         self.blocks.as_ref().is_some_and(|blocks| blocks.solve(values, count))
+    }
+
+    /// The values at the borders, one row each, of the solutions for right-hand sides with the given entries in border
+    /// rows, one column each, by products of half solutions. `None` where block elimination gives no result, or none
+    /// that agrees with a refined solution.
+    pub fn border_values(&self, rights: &[SparseEntries]) -> Option<DMatrix<f64>> {
+        let (unknowns, borders) = (self.matrix.pattern.size(), self.matrix.lower.len());
+        let values = self.blocks.as_ref()?.border_values(borders, rights)?;
+        let weight = |column: usize| if column * 7 % 11 < 5 { -1.0 } else { 1.0 - (column % 13) as f64 / 26.0 };
+        let mut solution = DVector::zeros(self.size());
+        for (column, right) in rights.iter().enumerate() {
+            right.iter().for_each(|(row, value)| solution[unknowns + row] += weight(column) * value);
+        }
+        if !self.solve(&mut solution) {
+            return None;
+        }
+        let terms: Vec<f64> = values.row_iter().map(|row| row.lp_norm(1)).collect();
+        let largest = terms.iter().copied().fold(0.0, f64::max);
+        let agrees = |(row, terms): (usize, &f64)| {
+            let sum: f64 = values.row(row).iter().enumerate().map(|(column, value)| weight(column) * value).sum();
+            f64::abs(sum - solution[unknowns + row]) <= BORDER_VALUE_ERROR * terms.max(f64::EPSILON * largest)
+        };
+        terms.iter().enumerate().all(agrees).then_some(values)
     }
 
     /// The factorised matrix.

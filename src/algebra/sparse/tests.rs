@@ -188,6 +188,44 @@ fn solutions_and_signs_are_those_of_the_dense_one() {
     assert!(compared > 70, "{compared}");
 }
 
+/// What solutions are at the borders, by half solutions and by the dense factorisation.
+#[test]
+fn values_at_borders_are_those_of_the_solutions() {
+    let mut random = Random(17);
+    let (mut compared, mut refused) = (0, 0);
+    for (number, kind) in kinds().into_iter().enumerate() {
+        for (dimension, nodes) in [(2, 3), (2, 12), (2, 40), (3, 5), (3, 40)] {
+            let System { sparse, dense, holdings } = system(&mut random, dimension, nodes, kind);
+            let Some(known) = Factorisation::new(dense.clone()).filter(|known| known.pivot_ratio() >= 1e-5) else {
+                continue;
+            };
+            let (unknowns, borders) = (dimension * nodes, sparse.lower.len());
+            let rights: Vec<SparseEntries> = (0..borders + 5)
+                .map(|row| [(row % borders, random.next()), (row * 3 % borders, random.next())].into_iter().collect())
+                .collect();
+            let (ways, none) = ([Friction::Bordered, Friction::Eliminated], Holdings::default());
+            for (holdings, friction) in ways.iter().flat_map(|way| [(&holdings, *way), (&none, *way)]) {
+                let found = SparseFactorisation::with(sparse.clone(), holdings, friction).expect("regular");
+                let Some(values) = found.border_values(&rights) else {
+                    refused += 1;
+                    continue;
+                };
+                assert_eq!(values.shape(), (borders, rights.len()));
+                for (right, values) in rights.iter().zip(values.column_iter()) {
+                    let mut expected = DVector::zeros(dense.nrows());
+                    right.iter().for_each(|(row, value)| expected[unknowns + row] += value);
+                    assert!(known.solve(&mut expected));
+                    let (scale, expected) = (expected.amax(), expected.rows(unknowns, borders));
+                    let error = (values - expected).amax() / scale;
+                    assert!(error <= 1e-8, "kind {number}, {dimension}, {nodes}: {error}");
+                }
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 150, "{compared} compared, {refused} refused");
+}
+
 #[test]
 fn eigenvalues_of_what_is_held_are_counted() {
     let mut random = Random(11);

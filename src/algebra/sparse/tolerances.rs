@@ -39,3 +39,8 @@ pub(crate) const STAGNATED_BACKWARD_ERROR: f64 = 1e-14;
 /// be computed. The next contraction may thus be a thousand times weaker than the last one before the accepted error is
 /// exceeded; the value saves one product with the matrix and affects only effort.
 pub(crate) const EXTRAPOLATION_MARGIN: f64 = 1e-3;
+
+/// Largest difference of a border's value by half solutions from that of a refined solution, relative to its terms. The
+/// value is a hundredth of the tolerance 1e-9 for zero rates; half solutions are not refined, and beyond it stiffnesses
+/// are so different that the solutions themselves are needed.
+pub(crate) const BORDER_VALUE_ERROR: f64 = 1e-11;

@@ -1,6 +1,6 @@
-//! Basis of the condensation on the contacts that can change: the full rates of the structure for unit velocities of
-//! these contacts at zero load, and the structure's own direction with zero velocities. They are the matrix `Z` and the
-//! vector `z₀` of `condensed_rate_problem` (the usual condensation on the contacts: A. Klarbring, Ing. Arch. 60 (1990)
+//! How the basis of the condensation on the contacts that can change is found: the rates of the structure for unit
+//! velocities of these contacts at zero load, and the structure's own direction with zero velocities. They are the matrix
+//! `Z` and the vector `z₀` of `condensed_rate_problem` (the usual condensation on the contacts: A. Klarbring, Ing. Arch. 60 (1990)
 //! 529, doi:10.1007/BF00541909).
 //!
 //! Let `A` be the rate equations in which these contacts are fixed, with a last row `l`: then `A Z = v` (unit
@@ -8,25 +8,31 @@
 //! just before the point, in which each of these contacts has some velocities prescribed and the others free: then
 //! `M x_j = e_j` with a unit velocity where it is prescribed and a unit force where it is free, and `t` is the incoming
 //! direction. Both span the rates that satisfy equilibrium with these forces free, so `[Z z₀] = [X t] G⁻¹`, with `G`
-//! the velocities and the load rate of `[X t]`.
+//! the velocities and the load rate of `[X t]`. Of many velocities only the load rates and the reactions are computed,
+//! as products of half solutions.
 
 use crate::algebra::dense::matrix_sink::Sink;
+use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::preconditioned_refinement::Nearby;
 use crate::algebra::{Factorisation, SystemFactorisation, null_space};
 use crate::branching::directions::arrival_tangent::Incoming;
+use crate::branching::directions::basis::{Basis, CombinationSolver, RatesAtContacts};
 use crate::branching::directions::tolerances::{ACCEPTED_BACKWARD_ERROR, SMALLEST_SPANNING_PIVOT, TANGENTIAL_COSINE};
 use crate::mechanics::contact::Reaction;
 use crate::mechanics::contact::vector::{Vector, dot};
 use crate::mechanics::equations::tolerances::RANK_TOLERANCE;
 use crate::mechanics::equations::{Kind, ModeSystem, Role, matrix, mode_factorisation, rate_recovery};
+use crate::mechanics::multi_contact::changeable_contacts::Standing;
 use crate::mechanics::multi_contact::rate_options::contact_options::Changeable;
 use crate::mechanics::problem::state::Rate;
 use crate::resources::budget;
 use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
 
 /// Number of velocities up to which corrections of solutions by a factorisation nearby, two or three of each, take less
-/// than a factorisation of their own. The value affects only effort, and the result by no more than rounding.
-const MOST_NEARBY: usize = 32;
+/// than a factorisation of their own, and above which rates at the contacts take less than whole ones. The value affects
+/// only effort, and the result by no more than rounding.
+const MOST_NEARBY: usize = 8;
 
 /// The velocities of all contacts that can change: the contact and the direction of each.
 fn velocities(changeable: &[Changeable]) -> impl Iterator<Item = (usize, &Vector)> {
@@ -35,21 +41,31 @@ fn velocities(changeable: &[Changeable]) -> impl Iterator<Item = (usize, &Vector
 
 /// The rates for unit velocities of each contact that can change, which this system prescribes, one after the other,
 /// and last the direction with zero velocities; `None` where this direction is not unique.
-pub(crate) fn columns(
-    equations: &ModeSystem<'_>,
+pub(crate) fn basis<'a>(
+    equations: &'a ModeSystem<'a>,
     changeable: &[Changeable],
     incoming: Option<Incoming<'_>>,
-) -> Option<Vec<Rate>> {
+) -> Option<Basis<'a>> {
     let is_cheaper = |_: &Incoming<'_>| velocities(changeable).count() <= MOST_NEARBY;
-    incoming
-        .filter(is_cheaper)
-        .and_then(|incoming| columns_nearby(equations, changeable, incoming))
-        .or_else(|| columns_held(equations, changeable, incoming.map(|incoming| incoming.rate)))
+    if let Some(columns) =
+        incoming.filter(is_cheaper).and_then(|incoming| columns_nearby(equations, changeable, incoming))
+    {
+        return Some(Basis::Whole(columns));
+    }
+    let factorisation = bordered_somehow(equations, incoming.map(|incoming| incoming.rate))?;
+    let are_many = velocities(changeable).count() > MOST_NEARBY;
+    match are_many.then(|| rates_at_contacts(equations, changeable, &factorisation)).flatten() {
+        Some(rates) => Some(Basis::AtContacts(rates)),
+        None => columns_held(equations, changeable, &factorisation).map(Basis::Whole),
+    }
 }
 
-/// The columns by a factorisation of the equations in which the contacts are fixed.
-fn columns_held(equations: &ModeSystem<'_>, changeable: &[Changeable], incoming: Option<&Rate>) -> Option<Vec<Rate>> {
-    let factorisation = bordered_somehow(equations, incoming)?;
+/// The whole rates by a factorisation of the equations in which the contacts are fixed.
+fn columns_held(
+    equations: &ModeSystem<'_>,
+    changeable: &[Changeable],
+    factorisation: &SystemFactorisation,
+) -> Option<Vec<Rate>> {
     let size = equations.size;
     let count = velocities(changeable).count() + 1;
     // The right-hand sides and their solutions.
@@ -69,17 +85,81 @@ fn columns_held(equations: &ModeSystem<'_>, changeable: &[Changeable], incoming:
     Some(values.chunks_exact(size).map(rate).collect())
 }
 
+/// The rates at the contacts by a factorisation of the equations in which they are fixed. `None` where options need more than velocities and reactions of their own contact, and where reactions depend on the motion
+/// of their nodes.
+fn rates_at_contacts<'a>(
+    equations: &'a ModeSystem<'a>,
+    changeable: &[Changeable],
+    factorisation: &SystemFactorisation,
+) -> Option<RatesAtContacts<'a>> {
+    let SystemFactorisation::Sparse(factorisation) = factorisation else { return None };
+    let count = velocities(changeable).count();
+    let is_plain = |entry: &Changeable| matches!(entry.standing, Standing::OnCone { .. } | Standing::Touching);
+    let state = equations.anchor;
+    let turns = |(contact, role): (usize, &Role)| match role {
+        Role::Free | Role::Stick | Role::Held | Role::HeldBy | Role::Frictionless => false,
+        Role::Line { .. } | Role::Plane { .. } => !equations.loading.frame(contact, state).curvature.is_zero(),
+        Role::Edge { .. } => true,
+    };
+    if !changeable.iter().all(is_plain) || equations.roles.iter().enumerate().any(turns) {
+        return None;
+    }
+    let structure = equations.loading.structure;
+    let unknowns = structure.unknowns();
+    let mut rights: Vec<SparseEntries> =
+        velocities(changeable).map(|(contact, direction)| moved(equations, contact, direction)).collect();
+    let at_borders = |right: &SparseEntries| right.iter().map(|(row, value)| (row - unknowns, *value)).collect();
+    let borders: Vec<SparseEntries> = rights.iter().map(at_borders).collect();
+    let _held = budget::take::<f64>(2 * count * (equations.size - unknowns));
+    let values = factorisation.border_values(&borders)?;
+    let mut own = rate_recovery::bordering(equations);
+    if !factorisation.solve(&mut own) {
+        return None;
+    }
+    rights.push(std::iter::once((equations.size - 1, 1.0)).collect());
+    let iterate = equations.iterate(state.clone());
+    let at_contacts = |values: &DVector<f64>| {
+        let mut rate = Rate { displacement: Vec::new(), ..rate_recovery::no_rate(equations) };
+        rate_recovery::rate_into(equations, &iterate, values, Kind::Rates, &mut rate);
+        rate
+    };
+    let mut whole = DVector::zeros(equations.size);
+    let mut rates: Vec<Rate> = Vec::with_capacity(count + 1);
+    for column in values.column_iter() {
+        whole.rows_mut(unknowns, column.len()).copy_from(&column);
+        rates.push(at_contacts(&whole));
+    }
+    rates.push(at_contacts(&own));
+    let driven = (0..structure.freedoms()).filter(|freedom| structure.unknown_of[*freedom].is_none());
+    let prescribed: f64 = driven.map(|freedom| equations.loading.support_rate(freedom).powi(2)).sum();
+    let solver = CombinationSolver {
+        factorisation: factorisation.clone(),
+        rights,
+        unknowns,
+        load_size: (1.0 + prescribed).sqrt(),
+    };
+    let own_size = rate_recovery::length_of(equations, &own);
+    Some(RatesAtContacts { equations, rates, solver: Arc::new(solver), own_size })
+}
+
 /// The right-hand side for a unit motion of the node of a closed contact along a direction, in the directions that the
 /// contact constrains.
 pub(crate) fn moving(equations: &ModeSystem<'_>, contact: usize, direction: &Vector) -> DVector<f64> {
     let mut values = DVector::zeros(equations.size);
-    let row = equations.row_of(contact);
-    let normal = equations.loading.frame(contact, equations.anchor).normal;
-    let held = equations.held_directions(contact);
-    // A frictionless contact constrains the normal direction alone, and so does a slipping one.
-    let held = if held.is_empty() { std::slice::from_ref(&normal) } else { held };
-    held.iter().enumerate().for_each(|(k, one)| values[row + k] = dot(one, direction));
+    moved(equations, contact, direction).into_iter().for_each(|(row, value)| values[row] = value);
     values
+}
+
+/// The entries of this right-hand side.
+fn moved(equations: &ModeSystem<'_>, contact: usize, direction: &Vector) -> SparseEntries {
+    let row = equations.row_of(contact);
+    let held = equations.held_directions(contact);
+    if held.is_empty() {
+        // A frictionless contact constrains the normal direction alone, and so does a slipping one.
+        let normal = equations.loading.frame(contact, equations.anchor).normal;
+        return std::iter::once((row, dot(&normal, direction))).collect();
+    }
+    held.iter().enumerate().map(|(k, one)| (row + k, dot(one, direction))).collect()
 }
 
 /// A factorisation with a border that makes it regular: the load, the incoming direction, or the null vector itself.
@@ -224,6 +304,7 @@ mod tests {
     use crate::branching::directions::candidate::held_modes;
     use crate::branching::directions::condensed_rate_problem::changeable;
     use crate::check::scenes::lattice::LatticeArch;
+    use crate::complementarity::rates::rate_problem::Motion;
     use crate::continuation::path::iterator::Path;
     use crate::continuation::scene::Scene;
     use crate::mechanics::multi_contact::changeable_contacts::Standing;
@@ -233,9 +314,10 @@ mod tests {
     use crate::step::mode_step::StepStart;
 
     /// At the contact changes of an arch that lands, the factorisation that led to each gives the same columns as a
-    /// factorisation of the equations in which the contacts are fixed.
+    /// factorisation of the equations in which the contacts are fixed, and so do rates at the contacts and what is solved
+    /// for from them.
     #[test]
-    fn a_factorisation_of_the_modes_before_gives_the_same() {
+    fn a_factorisation_of_the_modes_before_and_rates_at_contacts_give_the_same() {
         let (mut by_nearby, mut most) = (0, 0.0_f64);
         for friction in [0.0, 0.3] {
             let arch = LatticeArch { increments: 90, friction, ..LatticeArch::of_unknowns(400) }.landing(20);
@@ -281,13 +363,24 @@ mod tests {
                 let system = ModeSystem::new(loading, &held, state);
                 let changeable = changeable(loading, state, &standings);
                 let Some(columns) = columns_nearby(&system, &changeable, incoming) else { continue };
-                let expected = columns_held(&system, &changeable, None).expect("a regular point");
+                let factorisation = bordered_somehow(&system, None).expect("a regular point");
+                let expected = columns_held(&system, &changeable, &factorisation).expect("solutions");
                 by_nearby += 1;
-                for (one, other) in columns.iter().zip(&expected) {
+                let mut compare = |one: &Rate, other: &Rate| {
                     let mut difference = one.clone();
                     difference.add(other, -1.0);
                     let forces = difference.largest_reaction() / other.largest_reaction().max(1.0);
                     most = most.max(difference.size() / other.size()).max(forces);
+                };
+                columns.iter().zip(&expected).for_each(|(one, other)| compare(one, other));
+                let at_contacts = rates_at_contacts(&system, &changeable, &factorisation).expect("plain contacts");
+                for (place, whole) in expected.iter().enumerate() {
+                    let unit = DVector::from_fn(expected.len(), |row, _| f64::from(row == place));
+                    let known = &at_contacts.rates[place];
+                    compare(&Rate { displacement: whole.displacement.clone(), ..known.clone() }, whole);
+                    let motion = at_contacts.solver.of(&unit).norm();
+                    assert!((motion - whole.size()).abs() <= 1e-9 * motion, "{motion} and {}", whole.size());
+                    compare(&Basis::AtContacts(at_contacts.clone()).combined(&unit), whole);
                 }
             }
         }

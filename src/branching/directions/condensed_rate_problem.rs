@@ -6,6 +6,7 @@
 //! `rates` finds the rays.
 
 use crate::branching::directions::arrival_tangent::Incoming;
+use crate::branching::directions::basis::{Basis, column_by_column};
 use crate::branching::directions::candidate::{
     Alternative, CandidateDirection, FoundDirections, is_mechanism, merge, sort,
 };
@@ -32,11 +33,10 @@ use nalgebra::{DMatrix, DVector};
 /// separately.
 const FEW: usize = 6;
 
-/// The rate equations condensed on the changeable contacts: column `j` is the full rate for unit `v_j`, the last one
-/// is `z₀`.
+/// The rate equations condensed on the changeable contacts: weight `j` is `v_j`, the last one `τ`.
 pub(crate) struct Condensed<'a> {
     loading: Loading<'a>,
-    columns: Vec<Rate>,
+    basis: Basis<'a>,
     changeable: Vec<Changeable>,
     problem: RateProblem,
     /// The contact modes that each option of each entry stands for.
@@ -48,27 +48,23 @@ impl<'a> Condensed<'a> {
     /// Condenses the rate equations; `None` where the structure with the contacts fixed has more than one independent
     /// direction.
     pub(crate) fn new(
-        system: &ModeSystem<'_>,
+        system: &'a ModeSystem<'a>,
         loading: Loading<'a>,
         state: &State,
         standings: &[Standing],
         incoming: Option<Incoming<'_>>,
     ) -> Option<Self> {
         let changeable = changeable(loading, state, standings);
-        let of_column = loading.structure.freedoms() + 4 * loading.contacts.len();
-        let velocities: usize = changeable.iter().map(|entry| entry.velocities.len()).sum();
-        // The columns themselves, and the matrices of their motions and reactions.
-        let held = budget::take::<f64>(2 * (velocities + 1) * of_column);
-        let columns = condensation_basis::columns(system, &changeable, incoming)?;
+        let basis = condensation_basis::basis(system, &changeable, incoming)?;
+        let columns = basis.rates();
+        // The rates themselves, and the matrices of their motions and reactions.
+        let of_column = columns[0].displacement.len() + 4 * loading.contacts.len();
+        let held = budget::take::<f64>(2 * columns.len() * of_column);
         let normals = |contact: usize| loading.frame(contact, state).normal;
-        let mut forms = Forms { columns: &columns, normals: &normals, rows: Vec::new(), is_force: Vec::new(), held };
+        let mut forms = Forms { columns, normals: &normals, rows: Vec::new(), is_force: Vec::new(), held };
         let (entities, outcomes) = changeable.iter().map(|entry| entry.options(loading, state, &mut forms)).unzip();
         forms.held.add::<f64>(forms.rows.len() * columns.len());
-        let freedoms = columns[0].displacement.len();
-        let motion = column_by_column(freedoms + 1, columns.len(), |row, column| {
-            if row < freedoms { columns[column].displacement[row] } else { columns[column].load }
-        });
-        let reactions = column_by_column(4 * columns[0].reactions.len(), columns.len(), |row, column| {
+        let reactions = column_by_column(4 * loading.contacts.len(), columns.len(), |row, column| {
             let reaction = &columns[column].reactions[row / 4];
             if row % 4 == 0 { reaction.normal } else { reaction.tangential[row % 4 - 1] }
         });
@@ -76,11 +72,13 @@ impl<'a> Condensed<'a> {
             forms: column_by_column(forms.rows.len(), columns.len(), |row, column| forms.rows[row][column]),
             is_force: forms.is_force,
             entities,
-            motion,
+            load: basis.load(),
+            sizes: basis.sizes(),
+            motion: basis.motion(),
             reactions,
         };
         let held = forms.held;
-        Some(Self { loading, columns, changeable, problem, outcomes, _held: held })
+        Some(Self { loading, basis, changeable, problem, outcomes, _held: held })
     }
 
     /// The rate problem, for tests that try every combination.
@@ -162,8 +160,9 @@ impl<'a> Condensed<'a> {
     /// Adds slips of an unloaded node out of a corner, which begin along one of its obstacles in an unknown direction.
     fn add_slips_out_of_groups(&self, held: &[Mode], state: &State, effort: Effort<'_>, found: &mut FoundDirections) {
         let normals = |contact: usize| self.loading.frame(contact, state).normal;
+        let columns = self.basis.rates();
         let mut forms = Forms {
-            columns: &self.columns,
+            columns,
             normals: &normals,
             rows: self.problem.forms.row_iter().map(|row| row.transpose()).collect(),
             is_force: self.problem.is_force.clone(),
@@ -176,13 +175,15 @@ impl<'a> Condensed<'a> {
         if touches.is_empty() {
             return;
         }
-        let copied = self.problem.motion.len() + self.problem.reactions.len() + forms.rows.len() * self.columns.len();
+        let copied = self.problem.reactions.len() + forms.rows.len() * columns.len();
         forms.held.add::<f64>(copied);
-        let rows = DMatrix::from_fn(forms.rows.len(), self.columns.len(), |row, column| forms.rows[row][column]);
+        let rows = DMatrix::from_fn(forms.rows.len(), columns.len(), |row, column| forms.rows[row][column]);
         let problem = RateProblem {
             forms: rows,
             is_force: forms.is_force,
             entities: self.problem.entities.clone(),
+            load: self.problem.load.clone(),
+            sizes: self.problem.sizes.clone(),
             motion: self.problem.motion.clone(),
             reactions: self.problem.reactions.clone(),
         };
@@ -251,8 +252,7 @@ impl<'a> Condensed<'a> {
 
     /// The weights of the columns that best represent a rate: its velocities, and its component along `z₀`.
     fn weights_of(&self, state: &State, rate: &Rate) -> DVector<f64> {
-        let last = self.columns.len() - 1;
-        budget::spend(last * rate.displacement.len());
+        let last = self.problem.weights() - 1;
         let mut weights = DVector::zeros(last + 1);
         for entry in &self.changeable {
             let motion = self.loading.relative_rate(entry.contacts[0], state, rate);
@@ -261,12 +261,9 @@ impl<'a> Condensed<'a> {
             }
         }
         let mut rest = rate.clone();
-        for (column, weight) in self.columns.iter().zip(weights.iter()).take(last) {
-            rest.displacement.iter_mut().zip(&column.displacement).for_each(|(sum, value)| *sum -= weight * value);
-            rest.load -= weight * column.load;
-        }
-        let own = &self.columns[last];
-        weights[last] = own.product(&rest) / own.product(own);
+        rest.add(&self.basis.combined(&weights), -1.0);
+        let own = self.basis.combined(&DVector::from_fn(last + 1, |row, _| f64::from(row == last)));
+        weights[last] = own.product(&rest) / own.product(&own);
         weights
     }
 
@@ -357,14 +354,7 @@ impl<'a> Condensed<'a> {
     /// The rate of unit arc length for weights of the columns, and the weights scaled accordingly; a zero rate where
     /// the weights produce no motion.
     pub(crate) fn combine(&self, weights: &DVector<f64>) -> (Rate, DVector<f64>) {
-        budget::spend(self.columns.len() * (self.columns[0].displacement.len() + 4 * self.loading.contacts.len()));
-        let mut rate = self.columns[0].clone();
-        rate.scale(weights[0]);
-        for (column, weight) in self.columns.iter().zip(weights.iter()).skip(1) {
-            rate.displacement.iter_mut().zip(&column.displacement).for_each(|(sum, value)| *sum += weight * value);
-            rate.load += weight * column.load;
-            rate.reactions.iter_mut().zip(&column.reactions).for_each(|(sum, value)| sum.add(*weight, value));
-        }
+        let mut rate = self.basis.combined(weights);
         let size = rate.size();
         if size > WEAK_MARGIN * rate.largest_reaction() {
             rate.scale(1.0 / size);
@@ -398,14 +388,4 @@ pub(crate) fn changeable(loading: Loading<'_>, state: &State, standings: &[Stand
         entries.push(entry);
     }
     entries
-}
-
-/// A matrix built column by column, so that the work on a large one can be interrupted.
-fn column_by_column(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> DMatrix<f64> {
-    let mut matrix = DMatrix::zeros(rows, columns);
-    for (column, mut values) in matrix.column_iter_mut().enumerate() {
-        budget::spend(rows);
-        values.iter_mut().enumerate().for_each(|(row, value)| *value = entry(row, column));
-    }
-    matrix
 }

@@ -8,7 +8,7 @@ use crate::complementarity::rates::p_matrix::{is_monotone, options_of, reduce};
 use crate::complementarity::rates::parametric_lcp::all_solutions;
 use crate::complementarity::rates::rate_problem::{Entity, Signed};
 use crate::resources::budget;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 /// Applies the certificate to the whole problem; returns whether it succeeds.
 pub(crate) fn certified_at_once(search: &mut BranchAndBound<'_>) -> bool {
@@ -29,15 +29,15 @@ pub(crate) fn certified_at_once(search: &mut BranchAndBound<'_>) -> bool {
 
 /// The coefficients of forces, velocities and load rate over weights scaled to unit motion.
 fn coordinates(search: &BranchAndBound<'_>, pairs: &[[Signed; 2]]) -> (DMatrix<f64>, DMatrix<f64>, Vec<f64>) {
-    let motion = &search.problem.motion;
-    budget::spend(motion.len() + 2 * pairs.len() * motion.ncols());
-    let scales = DVector::from_iterator(motion.ncols(), motion.column_iter().map(|column| 1.0 / column.norm()));
+    let problem = search.problem;
+    budget::spend(2 * pairs.len() * problem.weights());
+    let scales: Vec<f64> = problem.sizes.iter().map(|size| 1.0 / size).collect();
     let rows = |side: usize| {
         DMatrix::from_fn(pairs.len(), scales.len(), |row, column| {
-            pairs[row][side].sign * search.problem.forms[(pairs[row][side].form, column)] * scales[column]
+            pairs[row][side].sign * problem.forms[(pairs[row][side].form, column)] * scales[column]
         })
     };
-    let load = motion.row(motion.nrows() - 1).iter().zip(scales.iter()).map(|(a, b)| a * b).collect();
+    let load = problem.load.iter().zip(&scales).map(|(a, b)| a * b).collect();
     (rows(0), rows(1), load)
 }
 
@@ -57,8 +57,7 @@ pub(crate) fn settled_signs(search: &BranchAndBound<'_>) -> Vec<f64> {
     if !is_monotone(&matrix, &bounds) {
         return Vec::new();
     }
-    let motion = &search.problem.motion;
-    let load_of = |ray: &Ray| (motion.row(motion.nrows() - 1) * &ray.weights)[0];
+    let load_of = |ray: &Ray| (&search.problem.load * &ray.weights)[0];
     let strict = |sign: f64| search.findings.rays.iter().any(|ray| !ray.weak && sign * load_of(ray) > SEARCH_TOLERANCE);
     [1.0, -1.0].into_iter().filter(|sign| strict(*sign)).collect()
 }

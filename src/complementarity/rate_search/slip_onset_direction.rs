@@ -110,7 +110,7 @@ impl CircleSearch<'_> {
 }
 
 fn cosine(problem: &RateProblem, first: &Ray, second: &Ray) -> f64 {
-    (&problem.motion * &first.weights).dot(&(&problem.motion * &second.weights))
+    problem.motion.of(&first.weights).dot(&problem.motion.of(&second.weights))
 }
 
 impl Touch {
@@ -130,7 +130,7 @@ impl Touch {
     /// The rays for one angle, each with the deviation of the traction from the direction, relative to the force rates;
     /// and what the search for them found otherwise.
     fn rays(&self, problem: &RateProblem, angle: f64, effort: Effort<'_>) -> (Vec<(Ray, f64)>, Findings) {
-        let copied = problem.forms.len() + problem.motion.len() + problem.reactions.len();
+        let copied = problem.forms.len() + problem.reactions.len();
         let _held = budget::take::<f64>(copied);
         budget::spend(copied);
         let (sine, cosine) = angle.sin_cos();
@@ -158,6 +158,8 @@ impl Touch {
             forms,
             is_force,
             entities,
+            load: problem.load.clone(),
+            sizes: problem.sizes.clone(),
             motion: problem.motion.clone(),
             reactions: problem.reactions.clone(),
         };

@@ -7,7 +7,8 @@ use crate::complementarity::rates::ray_of_combination;
 use crate::complementarity::rates::ray_of_combination::Line;
 use crate::complementarity::rates::{lemke, p_matrix, parametric_lcp};
 use crate::resources::cancel::CancelFlag;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, RowDVector};
+use std::sync::Arc;
 
 fn effort(most_modes: u64, cancel: &CancelFlag) -> Effort<'_> {
     Effort { most_modes, certify: true, cancel }
@@ -154,7 +155,9 @@ fn random_problem(random: &mut Random, kinds: &[bool], numbers: Numbers) -> Rate
         forms: matrix(&forms),
         is_force,
         entities,
-        motion: DMatrix::identity(weights, weights),
+        load: RowDVector::from_fn(weights, |_, column| f64::from(column + 1 == weights)),
+        sizes: vec![1.0; weights],
+        motion: Arc::new(DMatrix::<f64>::identity(weights, weights)),
         reactions: matrix(&reactions),
     }
 }

@@ -39,7 +39,7 @@ pub fn sweeps(problem: &RateProblem, cancel: &CancelFlag) -> Vec<Vec<usize>> {
 /// The sign of the last weight for which the load rises; `None` where other weights change the load as well.
 pub fn rising(problem: &RateProblem) -> Option<f64> {
     let last = problem.weights() - 1;
-    let load = problem.motion.row(problem.motion.nrows() - 1);
+    let load = &problem.load;
     let alone = load[last] != 0.0 && (0..last).all(|column| load[column].abs() <= 1e-9 * load[last].abs());
     alone.then(|| load[last].signum())
 }

@@ -76,7 +76,7 @@ fn pairs_of(local: &Local) -> Vec<Pair> {
 /// `M` and the coefficients of the load rate; velocities are scaled to unit motion, rows to unit maximum norm.
 fn coefficients(problem: &RateProblem, pairs: &[Pair]) -> (DMatrix<f64>, Vec<f64>) {
     let last = problem.weights() - 1;
-    let scale = |column: usize| 1.0 / problem.motion.column(column).norm().max(f64::MIN_POSITIVE);
+    let scale = |column: usize| 1.0 / problem.sizes[column].max(f64::MIN_POSITIVE);
     let mut matrix = DMatrix::from_fn(pairs.len(), pairs.len(), |row, column| {
         let Pair { velocity, sign, .. } = pairs[column];
         sign * problem.forms[(pairs[row].force, velocity)] * scale(velocity)
@@ -174,7 +174,9 @@ impl LemkeTableau {
         for _ in 0..MOST_PIVOTS * (count + 1) {
             *left = left.saturating_sub(self.rows.len());
             budget::spend(2 * self.rows.len());
-            if *left == 0 || self.rows.iter().any(|value| !value.is_finite()) {
+            // A pivot may overflow; the two columns decide which variable leaves.
+            let decides = [entering, 2 * count + 1].map(|column| self.rows.column(column).sum().is_finite());
+            if *left == 0 || decides != [true; 2] {
                 return None;
             }
             let row = self.leaving(entering)?;

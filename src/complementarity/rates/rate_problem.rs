@@ -1,7 +1,9 @@
 //! Data of a rate problem.
 
 use crate::resources::budget;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector, RowDVector};
+use std::fmt::Debug;
+use std::sync::Arc;
 
 /// Number of columns of a product that are formed at a time.
 const TOGETHER: usize = 8;
@@ -54,6 +56,20 @@ pub struct Touching {
     pub cone: [usize; 2],
 }
 
+/// The motion that a vector of weights stands for.
+pub trait Motion: Debug + Send + Sync {
+    /// Displacement rates and the load rate, in any fixed order; not finite where they cannot be found.
+    fn of(&self, weights: &DVector<f64>) -> DVector<f64>;
+}
+
+/// The motion of unit weight in each column.
+impl Motion for DMatrix<f64> {
+    fn of(&self, weights: &DVector<f64>) -> DVector<f64> {
+        budget::spend(self.len());
+        self * weights
+    }
+}
+
 /// A rate problem: forms over the weights, and the entities.
 #[derive(Debug, Clone)]
 pub struct RateProblem {
@@ -62,8 +78,12 @@ pub struct RateProblem {
     /// Whether a form is a rate of force; the others are velocities.
     pub is_force: Vec<bool>,
     pub entities: Vec<Entity>,
-    /// Displacement rates and, in the last row, the load rate; one weight per column. Gives the arc length of a ray.
-    pub motion: DMatrix<f64>,
+    /// The load rate at unit weight.
+    pub load: RowDVector<f64>,
+    /// The magnitude of the motion at unit weight, or an estimate.
+    pub sizes: Vec<f64>,
+    /// Gives the arc length of a ray.
+    pub motion: Arc<dyn Motion>,
     /// Rates of all reactions: their magnitude is the reference by which a rate of force counts as zero.
     pub reactions: DMatrix<f64>,
 }

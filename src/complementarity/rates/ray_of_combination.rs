@@ -40,7 +40,7 @@ impl Forces {
 
 /// Arc length of a vector of weights.
 pub(crate) fn size(problem: &RateProblem, weights: &DVector<f64>) -> f64 {
-    (&problem.motion * weights).norm()
+    problem.motion.of(weights).norm()
 }
 
 pub(crate) fn line(problem: &RateProblem, chosen: &[usize]) -> Line {
@@ -99,7 +99,7 @@ pub(crate) fn edges(problem: &RateProblem, chosen: &[usize], basis: &DMatrix<f64
     let choices = problem.entities.iter().zip(chosen).map(|(entity, &choice)| &entity.options[choice]);
     let mut edges: Vec<DVector<f64>> = Vec::new();
     for signed in choices.flat_map(|choice| &choice.nonnegative) {
-        budget::spend((problem.motion.nrows() + problem.reactions.nrows()) * problem.weights());
+        budget::spend(problem.reactions.nrows() * problem.weights());
         let row = problem.forms.row(signed.form);
         let parts = [0, 1].map(|column| row.transpose().dot(&basis.column(column)));
         if parts[0].abs().max(parts[1].abs()) <= RATE_TOLERANCE * row.amax() * basis.amax() {

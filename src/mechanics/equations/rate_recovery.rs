@@ -60,16 +60,16 @@ pub(crate) fn rate_into(
         rate.reactions[contact] = match role {
             Role::Free | Role::HeldBy => continue,
             Role::Stick | Role::Held => {
-                let normal = system.loading.frame(contact, system.anchor).normal;
                 let directions = system.held_directions(contact);
-                // In the frame of the contact the first direction is the normal.
-                let is_normal = directions[0] == normal;
-                let others = directions.iter().enumerate().skip(usize::from(is_normal));
-                let rest = others.fold([0.0; 3], |sum, (k, direction)| add(&sum, values[column + k], direction));
-                if is_normal {
-                    Reaction { normal: values[column], tangential: rest }
-                } else {
-                    Reaction::of(&rest, &normal)
+                let sum = |first: usize| {
+                    let some = directions.iter().enumerate().skip(first);
+                    some.fold([0.0; 3], |sum, (k, direction)| add(&sum, values[column + k], direction))
+                };
+                let normal_of_held = || system.loading.frame(contact, system.anchor).normal;
+                match role {
+                    Role::Held if directions[0] != normal_of_held() => Reaction::of(&sum(0), &normal_of_held()),
+                    // In the frame of the contact the first direction is the normal.
+                    _ => Reaction { normal: values[column], tangential: sum(1) },
                 }
             }
             Role::Frictionless => Reaction { normal: values[column], tangential: [0.0; 3] },

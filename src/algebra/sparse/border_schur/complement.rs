@@ -20,17 +20,7 @@ pub(super) struct Complement {
 impl Complement {
     /// Forms and factorises the complement; `None` where a number is not finite or a row or a column has no terms.
     pub fn new(corner: &DMatrix<f64>, rows: &HalfSolutions, columns: &HalfSolutions, pivots: &[f64]) -> Option<Self> {
-        let count = corner.nrows();
-        let mut sums = corner.clone();
-        let mut first = 0;
-        columns.each_group(pivots.len(), |group| {
-            for (row, products) in rows.products(group).iter().enumerate() {
-                for (column, product) in (first..count).zip(products) {
-                    sums[(row, column)] -= product;
-                }
-            }
-            first += group.first().map_or(0, |group| group.len());
-        });
+        let mut sums = corner - rows.products_with(columns, pivots.len());
         let mut column_scales = columns.norms(|place| 1.0 / pivots[place].abs());
         for (scale, column) in column_scales.iter_mut().zip(corner.column_iter()) {
             if *scale == 0.0 {

@@ -6,6 +6,7 @@
 use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::factors::substitutions::TOGETHER;
 use crate::resources::budget::{self, Taken};
+use nalgebra::DMatrix;
 use pulp::{Arch, NullaryFnOnce};
 
 /// Number of sums of one product that are formed at once: more would not fit into the registers.
@@ -103,6 +104,21 @@ impl HalfSolutions {
         Arch::new().dispatch(Products { groups: &self.groups, others, products: &mut products });
         products.truncate(self.count);
         products
+    }
+
+    /// The products of each vector, one row each, with each of `columns`, one column each, over `size` places.
+    pub fn products_with(&self, columns: &Self, size: usize) -> DMatrix<f64> {
+        let mut all = DMatrix::zeros(self.count, columns.count);
+        let mut first = 0;
+        columns.each_group(size, |group| {
+            for (row, products) in self.products(group).iter().enumerate() {
+                for (column, product) in (first..columns.count).zip(products) {
+                    all[(row, column)] = *product;
+                }
+            }
+            first += TOGETHER;
+        });
+        all
     }
 
     /// Subtracts from `N` vectors at all places their multiples of these vectors.

@@ -44,9 +44,15 @@ impl Factor {
         }
     }
 
-    fn solve_upper_transposed<const N: usize>(&self, values: &mut [[f64; N]]) {
+    /// `pivots`: those of the scaled matrix, in the elimination order.
+    fn solve_upper_transposed<const N: usize>(&self, values: &mut [[f64; N]], pivots: &[f64]) {
         match self {
-            Self::Symmetric(factor) => factor.substitutions().solve_upper_transposed(values),
+            Self::Symmetric(factor) => {
+                factor.substitutions().solve_lower(values);
+                for (values, pivot) in values.iter_mut().zip(pivots).filter(|(values, _)| **values != [0.0; N]) {
+                    values.iter_mut().for_each(|value| *value /= pivot);
+                }
+            }
             Self::Unsymmetric(factor) => factor.solve_upper_transposed(values),
         }
     }
@@ -122,6 +128,19 @@ pub(super) struct BorderSchurComplement {
     given: usize,
 }
 
+/// Vectors with a sparse part at the unknowns and a part at the borders, one column each.
+pub(super) struct SplitVectors {
+    pub upper: Vec<SparseEntries>,
+    pub lower: DMatrix<f64>,
+}
+
+impl SplitVectors {
+    /// Zeros.
+    pub fn new(count: usize, borders: usize) -> Self {
+        Self { upper: vec![SparseEntries::new(); count], lower: DMatrix::zeros(borders, count) }
+    }
+}
+
 impl BorderSchurComplement {
     /// Forms the complement and factorises it; `None` where a number is not finite.
     pub fn new(
@@ -143,7 +162,8 @@ impl BorderSchurComplement {
         let placed = |unknown, value| factor.placed(unknown, value);
         let mut work = vec![[0.0; TOGETHER]; size];
         let column_halves = HalfSolutions::new(&columns, &mut work, placed, |values| factor.solve_lower(values));
-        let row_halves = HalfSolutions::new(&rows, &mut work, placed, |values| factor.solve_upper_transposed(values));
+        let solve = |values: &mut [_]| factor.solve_upper_transposed(values, &pivots);
+        let row_halves = HalfSolutions::new(&rows, &mut work, placed, solve);
         let complement = Complement::new(&corner, &row_halves, &column_halves, &pivots)?;
         Some(Self { factor, size, rows, corner, pivots, column_halves, row_halves, complement, given })
     }
@@ -154,7 +174,8 @@ impl BorderSchurComplement {
         corner.iter().enumerate().for_each(|(column, value)| self.corner[(row, column)] = *value);
         let factor = &self.factor;
         let placed = |unknown, value| factor.placed(unknown, value);
-        self.row_halves.renew(&self.rows, row, self.size, placed, |values| factor.solve_upper_transposed(values));
+        let solve = |values: &mut [_]| factor.solve_upper_transposed(values, &self.pivots);
+        self.row_halves.renew(&self.rows, row, self.size, placed, solve);
         self.complement = Complement::new(&self.corner, &self.row_halves, &self.column_halves, &self.pivots)?;
         Some(self)
     }
@@ -168,6 +189,26 @@ impl BorderSchurComplement {
     /// The smallest pivot magnitude of the complement of the borders, with terms of about 1.
     pub fn pivot_ratio(&self) -> f64 {
         self.complement.pivot_ratio
+    }
+
+    /// The products of vectors, one row each, with the solutions for right-hand sides, one column each; `None` where the
+    /// complement gives no result. Both are solved for halfway.
+    pub fn products(&self, rows: &SplitVectors, rights: &SplitVectors) -> Option<DMatrix<f64>> {
+        let factor = &self.factor;
+        let placed = |unknown, value| factor.placed(unknown, value);
+        let mut work = vec![[0.0; TOGETHER]; self.size];
+        let right_halves = HalfSolutions::new(&rights.upper, &mut work, placed, |values| factor.solve_lower(values));
+        let solve = |values: &mut [_]| factor.solve_upper_transposed(values, &self.pivots);
+        let halves = HalfSolutions::new(&rows.upper, &mut work, placed, solve);
+        // Rows of raised pivots have no right-hand sides.
+        let lower = |split: &SplitVectors| split.lower.clone().resize_vertically(self.rows.len(), 0.0);
+        let mut weights = lower(rights) - self.row_halves.products_with(&right_halves, self.size);
+        if !self.complement.solve(&mut weights) {
+            return None;
+        }
+        let by_weights = lower(rows).transpose() - halves.products_with(&self.column_halves, self.size);
+        let products = halves.products_with(&right_halves, self.size) + by_weights * weights;
+        products.iter().all(|value| value.is_finite()).then_some(products)
     }
 
     /// Solves for `count` consecutive right-hand sides, overwriting both parts of each.

@@ -57,14 +57,6 @@ impl<'a> Substitutions<'a> {
         self.pass(Pass::Backward, values);
     }
 
-    /// Solves with `L D`; values in the elimination order.
-    pub fn solve_upper_transposed<const N: usize>(self, values: &mut [[f64; N]]) {
-        self.solve_lower(values);
-        for (values, pivot) in values.iter_mut().zip(self.pivots()) {
-            values.iter_mut().for_each(|value| *value /= pivot);
-        }
-    }
-
     fn pass<const N: usize>(self, which: Pass, values: &mut [[f64; N]]) {
         budget::spend(self.factors.len() * N);
         pulp::Arch::new().dispatch(Substitution { factors: self, which, values });

@@ -69,7 +69,7 @@ impl Dictionary {
     pub fn new(problem: &RateProblem, common: &[Vec<Signed>]) -> Option<Self> {
         let weights = problem.weights();
         let count = problem.forms.nrows() + 1;
-        let scales: Vec<f64> = problem.motion.column_iter().map(|column| column.norm()).collect();
+        let scales = &problem.sizes;
         if scales.iter().any(|scale| !scale.is_finite() || *scale <= 0.0) {
             return None;
         }
@@ -80,11 +80,7 @@ impl Dictionary {
         for form in 0..count {
             let row = &mut table[form * width..(form + 1) * width];
             for weight in 0..weights {
-                let value = if form + 1 == count {
-                    problem.motion[(problem.motion.nrows() - 1, weight)]
-                } else {
-                    problem.forms[(form, weight)]
-                };
+                let value = if form + 1 == count { problem.load[weight] } else { problem.forms[(form, weight)] };
                 row[weight + 1] = value / scales[weight];
             }
             let size = row.iter().fold(0.0_f64, |size, value| size.max(value.abs()));

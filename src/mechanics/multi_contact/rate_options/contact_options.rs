@@ -391,7 +391,7 @@ impl Changeable {
 
 /// The linear forms of the rate problem, collected as they are created.
 pub(crate) struct Forms<'a> {
-    /// The rate of each weight, one per column.
+    /// The rate of each weight, one per column. Where no contacts form a group, displacements may be missing.
     pub columns: &'a [Rate],
     /// The normal in which the reaction of the first contact of a group is resolved.
     pub normals: &'a dyn Fn(usize) -> Vector,

@@ -47,7 +47,9 @@ async fn explore_next<E: Engine>(engine: &E, family: Uuid) -> Result<Option<u64>
     )
     .await?;
     let ended = match (limits, next) {
-        (Some(limits), Some(next)) => Some((rows::status(&next)?, limits, next)).filter(|(status, ..)| status.is_ended()),
+        (Some(limits), Some(next)) => {
+            Some((rows::status(&next)?, limits, next)).filter(|(status, ..)| status.is_ended())
+        }
         _ => None,
     };
     let Some((status, limits, next)) = ended else {

@@ -17,6 +17,8 @@
 //! The library's sparse LU of the whole system takes 1.3 times as long with 24 unknowns and 3 borders, 13 times with
 //! 1,012 and 16 borders, as its pivoting fills the factors (`cargo bench --bench elimination`, two cores, 2026-11-25).
 
+mod border_values;
+
 use crate::algebra::dense::solve_counters::count_solves;
 use crate::algebra::sparse::border_schur::{BorderSchurComplement, Factor};
 use crate::algebra::sparse::factors::bordered_matrix::Bordered;
@@ -174,6 +176,13 @@ impl Blocks {
             self.with_nodes(motion, &weights[number * kept..][..kept], at_nodes, solution);
         }
         true
+    }
+
+    /// The values at the first `given` borders, one row each, of the solutions for right-hand sides with the given
+    /// entries in border rows, one column each.
+    pub fn border_values(&self, given: usize, rights: &[SparseEntries]) -> Option<DMatrix<f64>> {
+        count_solves(rights.len());
+        border_values::border_values(self, given, rights)
     }
 
     /// Appends the two parts of a right-hand side of the reduced system; returns its part at the eliminated nodes.
