@@ -32,30 +32,31 @@ impl Group {
         borders: &[SparseEntries],
         work: &mut [[f64; TOGETHER]],
         place: &impl Fn(usize, f64) -> (usize, f64),
-        solve: &impl Fn(&mut [[f64; TOGETHER]]),
+        solve: &impl Fn(&[usize], &mut [[f64; TOGETHER]]) -> Vec<usize>,
     ) -> Self {
+        let mut starts = Vec::new();
         for (lane, entries) in borders.iter().enumerate() {
             for (unknown, value) in entries {
                 let (place, value) = place(*unknown, *value);
                 work[place][lane] += value;
+                starts.push(place);
             }
         }
-        solve(work);
-        let reached = |place: &usize| work[*place] != [0.0; TOGETHER];
-        let places: Vec<usize> = (0..work.len()).filter(reached).collect();
+        let mut places = solve(&starts, work);
+        places.retain(|place| work[*place] != [0.0; TOGETHER]);
         let values = places.iter().map(|place| std::mem::replace(&mut work[*place], [0.0; TOGETHER])).collect();
         Self { places, values }
     }
 }
 
 impl HalfSolutions {
-    /// Solves by `solve` for borders that `place` puts into the elimination order and scales; `work` is zero before and
-    /// after.
+    /// Solves by `solve` for borders that `place` puts into the elimination order and scales; `solve` takes the places of
+    /// entries, returns those that it reaches, and changes no others. `work` is zero before and after.
     pub fn new(
         borders: &[SparseEntries],
         work: &mut [[f64; TOGETHER]],
         place: impl Fn(usize, f64) -> (usize, f64),
-        solve: impl Fn(&mut [[f64; TOGETHER]]),
+        solve: impl Fn(&[usize], &mut [[f64; TOGETHER]]) -> Vec<usize>,
     ) -> Self {
         let mut held = Taken::default();
         let mut group = |borders: &[SparseEntries]| {
@@ -74,7 +75,7 @@ impl HalfSolutions {
         changed: usize,
         size: usize,
         place: impl Fn(usize, f64) -> (usize, f64),
-        solve: impl Fn(&mut [[f64; TOGETHER]]),
+        solve: impl Fn(&[usize], &mut [[f64; TOGETHER]]) -> Vec<usize>,
     ) {
         let which = changed / TOGETHER;
         if let Some((own, borders)) = self.groups.get_mut(which).zip(borders.chunks(TOGETHER).nth(which)) {

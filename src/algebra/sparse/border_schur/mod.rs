@@ -44,16 +44,35 @@ impl Factor {
         }
     }
 
-    /// `pivots`: those of the scaled matrix, in the elimination order.
-    fn solve_upper_transposed<const N: usize>(&self, values: &mut [[f64; N]], pivots: &[f64]) {
+    /// Solves with `L` for values that are zero but at `starts`; returns the places that may not be zero afterwards,
+    /// ascending.
+    fn solve_lower_from<const N: usize>(&self, starts: &[usize], values: &mut [[f64; N]]) -> Vec<usize> {
+        match self {
+            Self::Symmetric(factor) => factor.substitutions().solve_lower_from(starts, values),
+            Self::Unsymmetric(factor) => {
+                factor.solve_lower(values);
+                (0..values.len()).collect()
+            }
+        }
+    }
+
+    /// The same with `Uᵀ`; `pivots`: those of the scaled matrix, in the elimination order.
+    fn solve_upper_transposed_from<const N: usize>(
+        &self,
+        starts: &[usize],
+        values: &mut [[f64; N]],
+        pivots: &[f64],
+    ) -> Vec<usize> {
         match self {
             Self::Symmetric(factor) => {
-                factor.substitutions().solve_lower(values);
-                for (values, pivot) in values.iter_mut().zip(pivots).filter(|(values, _)| **values != [0.0; N]) {
-                    values.iter_mut().for_each(|value| *value /= pivot);
-                }
+                let reached = factor.substitutions().solve_lower_from(starts, values);
+                reached.iter().for_each(|place| values[*place].iter_mut().for_each(|value| *value /= pivots[*place]));
+                reached
             }
-            Self::Unsymmetric(factor) => factor.solve_upper_transposed(values),
+            Self::Unsymmetric(factor) => {
+                factor.solve_upper_transposed(values);
+                (0..values.len()).collect()
+            }
         }
     }
 
@@ -161,8 +180,9 @@ impl BorderSchurComplement {
         let pivots = factor.pivots();
         let placed = |unknown, value| factor.placed(unknown, value);
         let mut work = vec![[0.0; TOGETHER]; size];
-        let column_halves = HalfSolutions::new(&columns, &mut work, placed, |values| factor.solve_lower(values));
-        let solve = |values: &mut [_]| factor.solve_upper_transposed(values, &pivots);
+        let column_halves =
+            HalfSolutions::new(&columns, &mut work, placed, |starts, values| factor.solve_lower_from(starts, values));
+        let solve = |starts: &_, values: &mut _| factor.solve_upper_transposed_from(starts, values, &pivots);
         let row_halves = HalfSolutions::new(&rows, &mut work, placed, solve);
         let complement = Complement::new(&corner, &row_halves, &column_halves, &pivots)?;
         Some(Self { factor, size, rows, corner, pivots, column_halves, row_halves, complement, given })
@@ -174,7 +194,7 @@ impl BorderSchurComplement {
         corner.iter().enumerate().for_each(|(column, value)| self.corner[(row, column)] = *value);
         let factor = &self.factor;
         let placed = |unknown, value| factor.placed(unknown, value);
-        let solve = |values: &mut [_]| factor.solve_upper_transposed(values, &self.pivots);
+        let solve = |starts: &_, values: &mut _| factor.solve_upper_transposed_from(starts, values, &self.pivots);
         self.row_halves.renew(&self.rows, row, self.size, placed, solve);
         self.complement = Complement::new(&self.corner, &self.row_halves, &self.column_halves, &self.pivots)?;
         Some(self)
@@ -197,8 +217,10 @@ impl BorderSchurComplement {
         let factor = &self.factor;
         let placed = |unknown, value| factor.placed(unknown, value);
         let mut work = vec![[0.0; TOGETHER]; self.size];
-        let right_halves = HalfSolutions::new(&rights.upper, &mut work, placed, |values| factor.solve_lower(values));
-        let solve = |values: &mut [_]| factor.solve_upper_transposed(values, &self.pivots);
+        let right_halves = HalfSolutions::new(&rights.upper, &mut work, placed, |starts, values| {
+            factor.solve_lower_from(starts, values)
+        });
+        let solve = |starts: &_, values: &mut _| factor.solve_upper_transposed_from(starts, values, &self.pivots);
         let halves = HalfSolutions::new(&rows.upper, &mut work, placed, solve);
         // Rows of raised pivots have no right-hand sides.
         let lower = |split: &SplitVectors| split.lower.clone().resize_vertically(self.rows.len(), 0.0);

@@ -1,9 +1,8 @@
 //! Forward and backward substitution with the factors `L D Lᵀ`, for one or several right-hand sides.
 //!
 //! The values of the right-hand sides at one unknown lie side by side, in the elimination order: each entry of `L`, once
-//! read, serves all of them, and eight values are one cache line. In the forward substitution a column at which all are
-//! zero is skipped, so that right-hand sides with few entries, as the borders of contacts have, visit only the columns
-//! that depend on them (J. R. Gilbert, T. Peierls, SIAM J. Sci. Stat. Comput. 9 (1988) 862, doi:10.1137/0909058).
+//! read, serves all of them, and eight values are one cache line. In the forward substitution, right-hand sides with few
+//! entries, as the borders of contacts have, visit only the columns that depend on them (J. R. Gilbert, T. Peierls, SIAM J. Sci. Stat. Comput. 9 (1988) 862, doi:10.1137/0909058).
 //!
 //! By hand, since the library has no substitution by itself, solves for one column after another where the factor is not
 //! in blocks, and gathers rows across its columns where it is; `cargo bench --bench elimination -- solves` has the ratio.
@@ -28,9 +27,11 @@ struct ColumnBlock<'a> {
 
 /// Which of the substitutions.
 #[derive(Clone, Copy)]
-enum Pass {
+enum Pass<'a> {
     /// With `L`.
     Forward,
+    /// With `L`, for values that are zero in all blocks but these.
+    ForwardIn(&'a [usize]),
     /// With `D Lᵀ`.
     Backward,
 }
@@ -57,8 +58,42 @@ impl<'a> Substitutions<'a> {
         self.pass(Pass::Backward, values);
     }
 
-    fn pass<const N: usize>(self, which: Pass, values: &mut [[f64; N]]) {
-        budget::spend(self.factors.len() * N);
+    /// Solves with `L` for values that are zero but at `starts`; returns the places that may not be zero afterwards,
+    /// ascending.
+    pub fn solve_lower_from<const N: usize>(self, starts: &[usize], values: &mut [[f64; N]]) -> Vec<usize> {
+        let blocks = self.reached(starts);
+        self.pass(Pass::ForwardIn(&blocks), values);
+        blocks.iter().flat_map(|which| self.block(*which).columns).collect()
+    }
+
+    /// The blocks that depend on unknowns at some places: those of the places, and of each the one that has its next row.
+    fn reached(self, starts: &[usize]) -> Vec<usize> {
+        let mut is_reached = vec![false; self.blocks()];
+        for place in starts {
+            let mut next = Some(*place);
+            while let Some(which) = next.map(|place| self.block_of(place))
+                && !std::mem::replace(&mut is_reached[which], true)
+            {
+                next = self.block(which).below.iter().copied().min();
+            }
+        }
+        (0..is_reached.len()).filter(|which| is_reached[*which]).collect()
+    }
+
+    /// The block of an unknown.
+    fn block_of(self, place: usize) -> usize {
+        match self.symbolic.cholesky.raw() {
+            SymbolicCholeskyRaw::Simplicial(_) => place,
+            SymbolicCholeskyRaw::Supernodal(blocks) => blocks.supernode_end().partition_point(|end| *end <= place),
+        }
+    }
+
+    fn pass<const N: usize>(self, which: Pass<'_>, values: &mut [[f64; N]]) {
+        let entries = match which {
+            Pass::Forward | Pass::Backward => self.factors.len(),
+            Pass::ForwardIn(blocks) => blocks.iter().map(|which| self.block(*which).entries.len()).sum(),
+        };
+        budget::spend(entries * N);
         pulp::Arch::new().dispatch(Substitution { factors: self, which, values });
     }
 
@@ -130,7 +165,7 @@ pub(super) fn solve(symbolic: &Symbolic, factors: &[f64], scales: &[f64], right_
 /// A substitution by the widest instructions of the machine: the sums are the same with any.
 struct Substitution<'a, 'v, const N: usize> {
     factors: Substitutions<'a>,
-    which: Pass,
+    which: Pass<'v>,
     values: &'v mut [[f64; N]],
 }
 
@@ -145,6 +180,11 @@ impl<const N: usize> pulp::NullaryFnOnce for Substitution<'_, '_, N> {
             Pass::Forward => {
                 for which in 0..self.factors.blocks() {
                     self.factors.block(which).forward(self.values, &mut sums);
+                }
+            }
+            Pass::ForwardIn(blocks) => {
+                for which in blocks {
+                    self.factors.block(*which).forward(self.values, &mut sums);
                 }
             }
             Pass::Backward => {
