@@ -94,13 +94,13 @@ fn rates_at_contacts<'a>(
 ) -> Option<RatesAtContacts<'a>> {
     let SystemFactorisation::Sparse(factorisation) = factorisation else { return None };
     let count = velocities(changeable).count();
-    let is_plain = |entry: &Changeable| matches!(entry.standing, Standing::OnCone { .. } | Standing::Touching);
     let state = equations.anchor;
     let turns = |(contact, role): (usize, &Role)| match role {
         Role::Free | Role::Stick | Role::Held | Role::HeldBy | Role::Frictionless => false,
         Role::Line { .. } | Role::Plane { .. } => !equations.loading.frame(contact, state).curvature.is_zero(),
         Role::Edge { .. } => true,
     };
+    let is_plain = |entry: &Changeable| matches!(entry.standing, Standing::OnCone { .. } | Standing::Touching);
     if !changeable.iter().all(is_plain) || equations.roles.iter().enumerate().any(turns) {
         return None;
     }

@@ -2,14 +2,14 @@
 
 use crate::algebra::dense::solve_counters::count_solves;
 use crate::algebra::sparse::factors::elimination_order::Symbolic;
+use crate::algebra::sparse::factors::substitutions::{self, Substitutions, TOGETHER};
 use crate::algebra::sparse::factors::supernodal_ldl;
 use crate::algebra::sparse::factors::tolerances::BLOCKED_CHOLESKY_WORK;
 use crate::resources::budget::{self, Taken};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
-use faer::sparse::linalg::cholesky::{LdltRef, LltRef};
 use faer::sparse::{SparseColMat, Triplet};
-use faer::{Conj, MatMut, Par, Side};
+use faer::{Par, Side};
 
 /// Entries of the lower triangle, diagonal included; several at one place are added up.
 pub type Triangle = Vec<(usize, usize, f64)>;
@@ -17,7 +17,7 @@ pub type Triangle = Vec<(usize, usize, f64)>;
 /// The factorisation of a positive definite matrix.
 pub struct Definite {
     symbolic: Symbolic,
-    /// Values of the factors of `L Lᵀ`, or of `L D Lᵀ` where factorised in pieces.
+    /// Values of the factors of `L D Lᵀ`.
     values: Vec<f64>,
     /// Scale factors of rows and columns.
     scales: Vec<f64>,
@@ -93,26 +93,43 @@ impl Definite {
             MemStack::new(&mut memory),
             Default::default(),
         );
-        done.is_ok()
+        // From `L Lᵀ`, so that the substitutions are those of all factors.
+        done.is_ok() && {
+            substitutions::divide_columns(&self.symbolic, &mut self.values);
+            true
+        }
     }
 
     /// Solves for one right-hand side, overwritten by the solution.
     pub fn solve(&self, values: &mut [f64]) {
         count_solves(1);
-        values.iter_mut().zip(&self.scales).for_each(|(value, scale)| *value *= scale);
-        let size = values.len();
         budget::spend(2 * self.values.len());
-        let symbolic = &self.symbolic.cholesky;
-        // Takes only a few numbers per unknown.
-        let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
-        let (right, stack) = (MatMut::from_column_major_slice_mut(values, size, 1), MemStack::new(&mut memory));
-        match self.symbolic.in_pieces() {
-            Some(_) => {
-                LdltRef::new(symbolic, &self.values).solve_in_place_with_conj(Conj::No, right, Par::Seq, stack);
+        substitutions::solve(&self.symbolic, &self.values, &self.scales, values);
+    }
+
+    /// For pairs of unknowns, the entries of the inverse: of the first with itself, of both, of the second with itself.
+    pub fn inverse_entries(&self, pairs: &[[usize; 2]]) -> Vec<[f64; 3]> {
+        count_solves(2 * pairs.len());
+        let place_of = self.symbolic.cholesky.perm().map(|order| order.arrays().1);
+        let place = |unknown: usize| place_of.map_or(unknown, |place_of| place_of[unknown]);
+        let substitutions = Substitutions::new(&self.symbolic, &self.values);
+        let pivots: Vec<f64> = substitutions.pivots().collect();
+        let mut halves = vec![[0.0; TOGETHER]; self.scales.len()];
+        let mut entries = vec![[0.0; 3]; pairs.len()];
+        for (pairs, entries) in pairs.chunks(TOGETHER / 2).zip(entries.chunks_mut(TOGETHER / 2)) {
+            let places: Vec<usize> = pairs.iter().flatten().map(|unknown| place(*unknown)).collect();
+            for (lane, (unknown, place)) in pairs.iter().flatten().zip(&places).enumerate() {
+                halves[*place][lane] = self.scales[*unknown];
             }
-            None => LltRef::new(symbolic, &self.values).solve_in_place_with_conj(Conj::No, right, Par::Seq, stack),
+            for place in substitutions.solve_lower_from(&places, &mut halves) {
+                let half = std::mem::replace(&mut halves[place], [0.0; TOGETHER]);
+                for (entries, half) in entries.iter_mut().zip(half.chunks_exact(2)) {
+                    let products = [half[0] * half[0], half[0] * half[1], half[1] * half[1]];
+                    entries.iter_mut().zip(products).for_each(|(sum, product)| *sum += product / pivots[place]);
+                }
+            }
         }
-        values.iter_mut().zip(&self.scales).for_each(|(value, scale)| *value *= scale);
+        entries
     }
 
     /// The direction of least stiffness, approximately, by inverse iteration with the matrix scaled to a diagonal of 1;
@@ -183,6 +200,41 @@ mod tests {
         assert!(!is_positive_definite(50, &chain(50, -1e-3), 1e-12));
         assert!(!is_positive_definite(2, &vec![(0, 0, 1.0), (1, 1, f64::NAN)], 1e-12));
         assert!(is_positive_definite(0, &Vec::new(), 1e-12));
+    }
+
+    /// A grid whose factors are in blocks, and a chain with factors in columns.
+    #[test]
+    fn entries_of_the_inverse_are_those_of_solutions() {
+        let width = 60;
+        let mut grid = Vec::new();
+        for place in 0..width * width {
+            grid.push((place, place, 4.0 + 1e-3 * (place % 5) as f64));
+            grid.extend((place % width > 0).then(|| (place, place - 1, -1.0)));
+            grid.extend((place >= width).then(|| (place, place - width, -1.0)));
+        }
+        for (size, lower) in [(width * width, grid), (50, chain(50, 1.0))] {
+            let definite = Definite::new(size, &lower, 0.0).expect("definite");
+            let pairs: Vec<[usize; 2]> = (0..7).map(|pair| [pair * 7, size - 1 - pair * pair / 2]).collect();
+            for (pair, found) in pairs.iter().zip(definite.inverse_entries(&pairs)) {
+                let mut solutions = [vec![0.0; size], vec![0.0; size]];
+                for (solution, unknown) in solutions.iter_mut().zip(pair) {
+                    solution[*unknown] = 1.0;
+                    definite.solve(solution);
+                    let mut rest = vec![0.0; size];
+                    rest[*unknown] = 1.0;
+                    for (row, column, value) in &lower {
+                        rest[*row] -= value * solution[*column];
+                        if row != column {
+                            rest[*column] -= value * solution[*row];
+                        }
+                    }
+                    assert!(rest.iter().all(|rest| rest.abs() < 1e-12), "{size}");
+                }
+                let expected = [solutions[0][pair[0]], solutions[0][pair[1]], solutions[1][pair[1]]];
+                let close = |(one, other): (&f64, f64)| (one - other).abs() <= 1e-12 * expected[0].abs();
+                assert!(found.iter().zip(expected).all(close), "{pair:?}: {found:?} and {expected:?}");
+            }
+        }
     }
 
     #[test]

@@ -21,6 +21,8 @@ const SWEEP: usize = 4;
 struct ColumnBlock<'a> {
     columns: Range<usize>,
     below: &'a [usize],
+    /// Index of the first entry.
+    start: usize,
     /// By columns, each with the rows of the block and those below.
     entries: &'a [f64],
 }
@@ -114,15 +116,16 @@ impl<'a> Substitutions<'a> {
                 ColumnBlock {
                     columns: which..which + 1,
                     below: &columns.row_idx()[start + 1..end],
+                    start,
                     entries: &self.factors[start..end],
                 }
             }
             SymbolicCholeskyRaw::Supernodal(blocks) => {
                 let columns = blocks.supernode_begin()[which]..blocks.supernode_end()[which];
                 let below = blocks.supernode(which).pattern();
-                let first = blocks.col_ptr_for_val()[which];
-                let entries = &self.factors[first..][..columns.len() * (columns.len() + below.len())];
-                ColumnBlock { columns, below, entries }
+                let start = blocks.col_ptr_for_val()[which];
+                let entries = &self.factors[start..][..columns.len() * (columns.len() + below.len())];
+                ColumnBlock { columns, below, start, entries }
             }
         }
     }
@@ -137,14 +140,37 @@ impl<'a> Substitutions<'a> {
     }
 }
 
+/// Turns the factor of `L Lᵀ` into those of `L D Lᵀ`.
+pub(super) fn divide_columns(symbolic: &Symbolic, factors: &mut [f64]) {
+    let layout = Substitutions::new(symbolic, factors);
+    let of_block = |block: ColumnBlock<'_>| (block.start, block.columns.len(), block.rows());
+    let blocks: Vec<(usize, usize, usize)> = (0..layout.blocks()).map(|which| of_block(layout.block(which))).collect();
+    for (start, columns, rows) in blocks {
+        for column in 0..columns {
+            let entries = &mut factors[start + column * rows..][column..rows];
+            let pivot = entries[0];
+            entries[0] = pivot * pivot;
+            entries[1..].iter_mut().for_each(|entry| *entry /= pivot);
+        }
+    }
+}
+
 /// Solves for consecutive right-hand sides, overwritten by the solutions.
 pub(super) fn solve(symbolic: &Symbolic, factors: &[f64], scales: &[f64], right_hand_sides: &mut [f64]) {
+    if right_hand_sides.len() > scales.len() {
+        solve_together::<TOGETHER>(symbolic, factors, scales, right_hand_sides);
+    } else {
+        solve_together::<1>(symbolic, factors, scales, right_hand_sides);
+    }
+}
+
+fn solve_together<const N: usize>(symbolic: &Symbolic, factors: &[f64], scales: &[f64], right_hand_sides: &mut [f64]) {
     let size = scales.len();
     let order = symbolic.cholesky.perm().map(|perm| perm.arrays().0);
     let unknown = |place: usize| order.map_or(place, |order| order[place]);
     let substitutions = Substitutions::new(symbolic, factors);
-    let mut values = vec![[0.0; TOGETHER]; size];
-    for right in right_hand_sides.chunks_mut(size * TOGETHER) {
+    let mut values = vec![[0.0; N]; size];
+    for right in right_hand_sides.chunks_mut(size.max(1) * N) {
         for (place, values) in values.iter_mut().enumerate() {
             let unknown = unknown(place);
             *values = std::array::from_fn(|lane| right.get(lane * size + unknown).map_or(0.0, |v| v * scales[unknown]));

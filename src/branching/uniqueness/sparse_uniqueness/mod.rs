@@ -45,7 +45,7 @@ const MOST_OF_MANY: usize = 512;
 /// contact: so many contacts as this part of the square can be searched as fast. A block of 8,256 unknowns, with some 45
 /// entries and up to 129 slipping contacts, takes 12.0, 11.4 and 9.6 s with 15, 45 and 180.
 const CONTACTS_OF_SQUARE: usize = 10;
-/// Largest number of entries of the condensed equations (contacts that can change times the size of their columns).
+/// Largest number of entries of the condensed equations (velocities of contacts that can change times the reactions of all).
 const MOST_CONDENSED: usize = 25_000_000;
 
 /// Lists the directions; `false` where they are not proven to be complete and the contacts are few enough for a search.
@@ -62,7 +62,7 @@ pub(crate) fn directions(
     }
     let Some(equations) = Equations::new(loading, state, standings) else { return false };
     let columns = equations.changing.len() * loading.structure.dimension;
-    let is_huge = columns * (loading.structure.freedoms() + 4 * loading.contacts.len()) > MOST_CONDENSED;
+    let is_huge = columns * 4 * loading.contacts.len() > MOST_CONDENSED;
     // Where contacts are few, families of motions that no element resists are left to the search.
     let is_few = equations.changing.len() <= FEW;
     let proof = proof::proof(&equations, incoming.map(|incoming| incoming.rate))

@@ -203,25 +203,26 @@ fn take_touching(
             }
         }
     });
-    let mut values = vec![0.0; equations.size];
-    let mut resisted = |entries: &[(usize, f64)]| -> [f64; 2] {
-        values.fill(0.0);
-        entries.iter().for_each(|(column, value)| values[*column] = *value);
-        inverse.solve(&mut values);
-        [entries[0].0, entries[1].0].map(|column| values[column])
+    let friction_of = |one: &ChangingContact| equations.loading.contacts[one.contact].friction.coefficient;
+    let rubs = |(one, row): &(&ChangingContact, &Vec<(usize, f64)>)| {
+        one.direction.is_none() && friction_of(one) != 0.0 && row.iter().any(|(_, value)| *value != 0.0)
     };
-    for (one, row) in equations.changing.iter().zip(&rows) {
-        let friction = equations.loading.contacts[one.contact].friction.coefficient;
-        if one.direction.is_some() || friction == 0.0 || row.iter().all(|(_, value)| *value == 0.0) {
-            continue;
-        }
+    let touching: Vec<(&ChangingContact, &Vec<(usize, f64)>)> =
+        equations.changing.iter().zip(&rows).filter(rubs).collect();
+    let pairs: Vec<[usize; 2]> = touching.iter().map(|(one, _)| [one.column, one.column + 1]).collect();
+    for ((one, row), compliances) in touching.into_iter().zip(inverse.inverse_entries(&pairs)) {
+        let friction = friction_of(one);
+        let resisted = |along: f64, across: f64| {
+            let [own, both, other] = compliances;
+            [own * along + both * across, both * along + other * across]
+        };
         let (tangent, normal) = (one.column, one.column + 1);
         let moves = null.filter(|null| null[tangent].abs().max(null[normal].abs()) > WEAK_MARGIN);
         let weight = match moves {
             Some(null) if null[normal].abs() > WEAK_MARGIN => friction * null[tangent] / null[normal],
             Some(_) => return None,
             None => {
-                let [along, own] = resisted(&[(tangent, 0.0), (normal, 1.0)]);
+                let [along, own] = resisted(0.0, 1.0);
                 (friction * along / own).clamp(-LARGEST_WEIGHT, LARGEST_WEIGHT)
             }
         };
@@ -229,7 +230,7 @@ fn take_touching(
             return None;
         }
         let form = [(tangent, -friction), (normal, weight)];
-        let [along, own] = resisted(&form);
+        let [along, own] = resisted(-friction, weight);
         let softness = weight * own - friction * along;
         let stiffness = row.iter().find(|(column, _)| *column == normal).map_or(0.0, |(_, value)| *value);
         let balance = (softness / stiffness).sqrt();
