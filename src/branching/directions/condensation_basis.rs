@@ -16,7 +16,7 @@ use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::preconditioned_refinement::Nearby;
 use crate::algebra::{Factorisation, SystemFactorisation, null_space};
 use crate::branching::directions::arrival_tangent::Incoming;
-use crate::branching::directions::basis::{Basis, CombinationSolver, RatesAtContacts};
+use crate::branching::directions::rate_basis::{CombinationSolver, RateBasis, RatesAtContacts};
 use crate::branching::directions::tolerances::{ACCEPTED_BACKWARD_ERROR, SMALLEST_SPANNING_PIVOT, TANGENTIAL_COSINE};
 use crate::mechanics::contact::Reaction;
 use crate::mechanics::contact::vector::{Vector, dot};
@@ -45,18 +45,18 @@ pub(crate) fn basis<'a>(
     equations: &'a ModeSystem<'a>,
     changeable: &[Changeable],
     incoming: Option<Incoming<'_>>,
-) -> Option<Basis<'a>> {
+) -> Option<RateBasis<'a>> {
     let is_cheaper = |_: &Incoming<'_>| velocities(changeable).count() <= MOST_NEARBY;
     if let Some(columns) =
         incoming.filter(is_cheaper).and_then(|incoming| columns_nearby(equations, changeable, incoming))
     {
-        return Some(Basis::Whole(columns));
+        return Some(RateBasis::Whole(columns));
     }
     let factorisation = bordered_somehow(equations, incoming.map(|incoming| incoming.rate))?;
     let are_many = velocities(changeable).count() > MOST_NEARBY;
     match are_many.then(|| rates_at_contacts(equations, changeable, &factorisation)).flatten() {
-        Some(rates) => Some(Basis::AtContacts(rates)),
-        None => columns_held(equations, changeable, &factorisation).map(Basis::Whole),
+        Some(rates) => Some(RateBasis::AtContacts(rates)),
+        None => columns_held(equations, changeable, &factorisation).map(RateBasis::Whole),
     }
 }
 
@@ -304,7 +304,7 @@ mod tests {
     use crate::branching::directions::candidate::held_modes;
     use crate::branching::directions::condensed_rate_problem::changeable;
     use crate::check::scenes::lattice::LatticeArch;
-    use crate::complementarity::rates::rate_problem::Motion;
+    use crate::complementarity::rates::rate_problem::MotionOfWeights;
     use crate::continuation::path::iterator::Path;
     use crate::continuation::scene::Scene;
     use crate::mechanics::multi_contact::changeable_contacts::Standing;
@@ -380,7 +380,7 @@ mod tests {
                     compare(&Rate { displacement: whole.displacement.clone(), ..known.clone() }, whole);
                     let motion = at_contacts.solver.of(&unit).norm();
                     assert!((motion - whole.size()).abs() <= 1e-9 * motion, "{motion} and {}", whole.size());
-                    compare(&Basis::AtContacts(at_contacts.clone()).combined(&unit), whole);
+                    compare(&RateBasis::AtContacts(at_contacts.clone()).combined(&unit), whole);
                 }
             }
         }

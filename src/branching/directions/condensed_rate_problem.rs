@@ -6,11 +6,11 @@
 //! `rates` finds the rays.
 
 use crate::branching::directions::arrival_tangent::Incoming;
-use crate::branching::directions::basis::{Basis, column_by_column};
 use crate::branching::directions::candidate::{
     Alternative, CandidateDirection, FoundDirections, is_mechanism, merge, sort,
 };
 use crate::branching::directions::condensation_basis;
+use crate::branching::directions::rate_basis::{RateBasis, column_by_column};
 use crate::branching::directions::tolerances::WEAK_MARGIN;
 use crate::complementarity::rate_search::branch_and_bound::{self, Effort, Ray};
 use crate::complementarity::rate_search::simultaneous_slips;
@@ -36,7 +36,7 @@ const FEW: usize = 6;
 /// The rate equations condensed on the changeable contacts: weight `j` is `v_j`, the last one `τ`.
 pub(crate) struct Condensed<'a> {
     loading: Loading<'a>,
-    basis: Basis<'a>,
+    basis: RateBasis<'a>,
     changeable: Vec<Changeable>,
     problem: RateProblem,
     /// The contact modes that each option of each entry stands for.

@@ -57,13 +57,13 @@ pub struct Touching {
 }
 
 /// The motion that a vector of weights stands for.
-pub trait Motion: Debug + Send + Sync {
+pub trait MotionOfWeights: Debug + Send + Sync {
     /// Displacement rates and the load rate, in any fixed order; not finite where they cannot be found.
     fn of(&self, weights: &DVector<f64>) -> DVector<f64>;
 }
 
 /// The motion of unit weight in each column.
-impl Motion for DMatrix<f64> {
+impl MotionOfWeights for DMatrix<f64> {
     fn of(&self, weights: &DVector<f64>) -> DVector<f64> {
         budget::spend(self.len());
         self * weights
@@ -83,7 +83,7 @@ pub struct RateProblem {
     /// The magnitude of the motion at unit weight, or an estimate.
     pub sizes: Vec<f64>,
     /// Gives the arc length of a ray.
-    pub motion: Arc<dyn Motion>,
+    pub motion: Arc<dyn MotionOfWeights>,
     /// Rates of all reactions: their magnitude is the reference by which a rate of force counts as zero.
     pub reactions: DMatrix<f64>,
 }

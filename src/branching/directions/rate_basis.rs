@@ -7,7 +7,7 @@
 
 use crate::algebra::sparse::SparseFactorisation;
 use crate::algebra::sparse::factors::entries::SparseEntries;
-use crate::complementarity::rates::rate_problem::Motion;
+use crate::complementarity::rates::rate_problem::MotionOfWeights;
 use crate::mechanics::equations::{ModeSystem, rate_recovery};
 use crate::mechanics::problem::state::Rate;
 use crate::resources::budget;
@@ -16,7 +16,7 @@ use std::fmt;
 use std::sync::Arc;
 
 /// The rate of each weight, the last one that of `z₀`.
-pub(crate) enum Basis<'a> {
+pub(crate) enum RateBasis<'a> {
     Whole(Vec<Rate>),
     AtContacts(RatesAtContacts<'a>),
 }
@@ -31,7 +31,7 @@ pub(crate) struct RatesAtContacts<'a> {
     pub own_size: f64,
 }
 
-impl Basis<'_> {
+impl RateBasis<'_> {
     /// The rates of unit weights; without displacements where they are rates at contacts.
     pub fn rates(&self) -> &[Rate] {
         match self {
@@ -75,7 +75,7 @@ impl Basis<'_> {
     }
 
     /// The motions of combinations of the weights.
-    pub fn motion(&self) -> Arc<dyn Motion> {
+    pub fn motion(&self) -> Arc<dyn MotionOfWeights> {
         match self {
             Self::Whole(rates) => {
                 let freedoms = rates[0].displacement.len();
@@ -113,7 +113,7 @@ impl CombinationSolver {
     }
 }
 
-impl Motion for CombinationSolver {
+impl MotionOfWeights for CombinationSolver {
     fn of(&self, weights: &DVector<f64>) -> DVector<f64> {
         let Some(values) = self.solution(weights) else {
             return DVector::from_element(self.unknowns + 1, f64::NAN);
