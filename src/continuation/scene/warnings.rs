@@ -1,11 +1,12 @@
 //! What is valid in a model and may be a mistake.
 
+use crate::model::input::names::quoted;
 use crate::model::request::recorded_forces::MAX_FORCES_UNASKED;
 use crate::model::request::{Contact, Element};
 use crate::model::solids::contact_surfaces::ContactSurfaces;
 use crate::model::{JobRequest, Model};
 use crate::result::plan::Warning;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Coefficients of friction above this value are rather angles in degrees.
 const LARGEST_USUAL_FRICTION: f64 = 5.0;
@@ -19,7 +20,9 @@ pub(crate) fn warnings(request: &JobRequest) -> Vec<Warning> {
     let mut warnings = large_friction(model);
     warnings.extend(unrecorded_forces(request));
     warnings.extend(doubled_bars(model));
-    warnings.extend(overlapping_meshes(model));
+    let surfaces = ContactSurfaces::new(model, 1.0);
+    warnings.extend(overlapping_meshes(model, &surfaces));
+    warnings.extend(exchanged_surfaces(model, &surfaces));
     warnings
 }
 
@@ -64,8 +67,7 @@ fn unrecorded_forces(request: &JobRequest) -> Vec<Warning> {
 }
 
 /// Surfaces whose meshes overlap where they touch at the start.
-fn overlapping_meshes(model: &Model) -> Vec<Warning> {
-    let surfaces = ContactSurfaces::new(model, 1.0);
+fn overlapping_meshes(model: &Model, surfaces: &ContactSurfaces<'_>) -> Vec<Warning> {
     let bodies = model.contacts.iter().enumerate().filter(|(_, contact)| contact.against.is_some());
     let overlap = |(place, contact): (usize, &Contact)| {
         let body = surfaces.contact(contact, model.nodes.get_index_of(&contact.node)?).ok()?;
@@ -79,6 +81,25 @@ fn overlapping_meshes(model: &Model) -> Vec<Warning> {
         overlaps.len()
     );
     vec![Warning { pointer: format!("/model/contacts/{}", model.posted_contact(*place)), detail }]
+}
+
+/// Mortar contacts whose `surface` reaches beyond both ends of the other.
+fn exchanged_surfaces(model: &Model, surfaces: &ContactSurfaces<'_>) -> Vec<Warning> {
+    let mut seen: HashSet<(Option<&str>, Option<&str>)> = HashSet::new();
+    let mut warnings = Vec::new();
+    for (place, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| contact.against.is_some()) {
+        let names = (contact.surface.as_deref(), contact.against.as_deref());
+        if !seen.insert(names) || !surfaces.reaches_beyond(contact) {
+            continue;
+        }
+        let [own, other] = [names.0, names.1].map(|name| quoted(name.unwrap_or_default()));
+        let detail = format!(
+            "{own} reaches beyond both ends of {other}: where such an end passes a node of {own}, gaps jump and the path \
+             may end; with {other} as `surface` and {own} as `against` it does not"
+        );
+        warnings.push(Warning { pointer: format!("/model/contacts/{}/surface", model.posted_contact(place)), detail });
+    }
+    cut(warnings)
 }
 
 /// Bars that join the same two nodes as one before them.
@@ -122,6 +143,51 @@ mod tests {
         let told = warnings(&request);
         assert_eq!(told.len(), 5);
         assert!(told[4].detail.ends_with("; the same holds at 35 more places"), "{}", told[4].detail);
+    }
+
+    /// Two blocks, each a row of square elements as wide as `widths` says, the upper one in the middle of the lower one.
+    fn blocks(widths: [usize; 2], surface: usize, discretisation: &str) -> JobRequest {
+        let (mut nodes, mut elements, mut faces) = (Map::new(), Vec::new(), Vec::new());
+        for (body, width) in widths.into_iter().enumerate() {
+            let name = |x: usize, y: usize| format!("{body}_{x}_{y}");
+            for (x, y) in (0..=width).flat_map(|x| [(x, 0), (x, 1)]) {
+                nodes.insert(name(x, y), json!([x as f64 - 0.5 * width as f64, body + y]));
+            }
+            for x in 0..width {
+                let corners = [name(x, 0), name(x + 1, 0), name(x + 1, 1), name(x, 1)];
+                elements.push(json!({"kind": "quadrilateral4", "nodes": corners, "material": "rubber"}));
+            }
+            let side = 1 - body;
+            faces.push((0..width).map(|x| [name(x, side), name(x + 1, side)]).collect::<Vec<_>>());
+        }
+        let names = ["lower", "upper"];
+        let model = json!({
+            "dimension": 2, "nodes": nodes, "elements": elements,
+            "materials": {"rubber": {"kind": "neo_hookean", "young": 1.0, "poisson": 0.3}},
+            "surfaces": {"lower": {"faces": faces[0]}, "upper": {"faces": faces[1]}},
+            "contacts": [{"surface": names[surface], "against": names[1 - surface], "friction": 0.3,
+                          "discretisation": discretisation}],
+            "stages": [{"name": "push", "forces": {"1_0_1": [1, 0]}, "until": {"load_above": 1}}],
+        });
+        let text = serde_json::to_vec(&json!({"model": model})).expect("JSON");
+        crate::model::decode::decode(&text).expect("a request")
+    }
+
+    #[test]
+    fn a_surface_that_reaches_beyond_the_other_is_told() {
+        let told =
+            |request: JobRequest| warnings(&request).into_iter().map(|warning| warning.pointer).collect::<Vec<_>>();
+        let is = ["/model/contacts/0/surface"];
+        assert_eq!(told(blocks([4, 2], 0, "mortar")), is);
+        assert_eq!(told(blocks([2, 4], 1, "mortar")), is);
+        for request in [
+            blocks([4, 2], 1, "mortar"),
+            blocks([2, 4], 0, "mortar"),
+            blocks([3, 3], 0, "mortar"),
+            blocks([4, 2], 0, "node_to_surface"),
+        ] {
+            assert_eq!(told(request), Vec::<String>::new());
+        }
     }
 
     #[test]

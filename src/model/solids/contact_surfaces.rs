@@ -212,6 +212,20 @@ impl<'a> ContactSurfaces<'a> {
         }
     }
 
+    /// Whether the `surface` of a mortar contact in the plane reaches beyond both ends of the other, and the other beyond
+    /// none of its own.
+    pub fn reaches_beyond(&self, contact: &Contact) -> bool {
+        let find = |name: &Option<String>| name.as_deref().and_then(|name| self.surfaces.get(name)?.as_ref().ok());
+        match (find(&contact.surface), find(&contact.against)) {
+            (Some(TouchedSurface::Plane(own)), Some(TouchedSurface::Plane(other))) if !contact.touches_itself() => {
+                contact.discretisation.unwrap_or_default() == ContactDiscretisation::Mortar
+                    && own.has_end_of(other) == [true; 2]
+                    && other.has_end_of(own) == [false; 2]
+            }
+            _ => false,
+        }
+    }
+
     /// Whether a node is on the free side of the surface that it touches, and its faces do not cross it: the mean of the gap
     /// may be negative there, where faces are much longer than those opposite.
     fn is_apart(&self, node: usize, kinematics: &Arc<dyn CoupledKinematics>, opposite: &TouchedSurface) -> bool {

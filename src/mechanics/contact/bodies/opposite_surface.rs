@@ -153,6 +153,30 @@ impl OppositeSurface {
         best.1 > 0.0
     }
 
+    /// Whether another undeformed surface ends in front of this one, away from its own ends: that surface's faces run the
+    /// other way there.
+    pub fn has_end_of(&self, other: &Self) -> [bool; 2] {
+        let ends_here = |end: usize, face: &SurfaceFace| {
+            let places = face.nodes.map(|node| other.places[node]);
+            face.ends[end] && self.is_before_inner_part(places[end], difference(places[1], places[0]))
+        };
+        [0, 1].map(|end| other.faces.iter().any(|face| ends_here(end, face)))
+    }
+
+    /// Whether the nearest point of the surface is none of its ends and belongs to a face that runs against `along`.
+    fn is_before_inner_part(&self, point: PlaneVector, along: PlaneVector) -> bool {
+        let ends_of = |face: &SurfaceFace| face.nodes.map(|node| self.places[node]);
+        let by_distance = |face: &SurfaceFace| distance_from_segment(point, ends_of(face));
+        let Some(nearest) = self.faces.iter().min_by(|a, b| by_distance(a).total_cmp(&by_distance(b))) else {
+            return false;
+        };
+        let [first, last] = ends_of(nearest);
+        let (edge, from) = (difference(last, first), difference(point, first));
+        let share = product(edge, from) / product(edge, edge);
+        let is_inner = |end: bool, way: f64| !end || way > SAME_DISTANCE;
+        is_inner(nearest.ends[0], share) && is_inner(nearest.ends[1], 1.0 - share) && product(edge, along) < 0.0
+    }
+
     /// The face before and the face after a node (an index into `nodes`).
     pub fn faces_at(&self, node: usize) -> [Option<usize>; 2] {
         let find = |end: usize| self.faces.iter().position(|face| face.nodes[end] == node);
