@@ -22,7 +22,7 @@ use crate::mechanics::problem::contact_jacobian;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_contact_forces;
 use crate::mechanics::problem::state::{Rate, State};
-use crate::step::tolerances::{SHORTEST_PART, WAY_MARGIN};
+use crate::step::tolerances::{EVENT_TOLERANCE, LARGEST_ROUNDING, ROUND_OFF_MULTIPLE, SHORTEST_PART, WAY_MARGIN};
 
 /// An event function; negative values mean that the event has been passed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -246,11 +246,23 @@ impl EventFunction {
         }
     }
 
-    /// Whether a value of the quantity is above a tolerance times its scale.
-    pub fn is_above(self, loading: Loading<'_>, state: &State, value: f64, tolerance: f64, force_scale: f64) -> bool {
-        // No scale of forces is larger than that of the path, which often decides.
-        let most = if self.is_of_forces() { force_scale } else { 1.0 };
-        value > tolerance * most || value > tolerance * self.scale(loading, state, force_scale)
+    /// The value up to which a negative quantity does not count as passed.
+    pub fn zero(self, loading: Loading<'_>, state: &State, force_scale: f64) -> f64 {
+        let scale = self.scale(loading, state, force_scale);
+        (EVENT_TOLERANCE * scale).max(self.rounding(loading, state).min(LARGEST_ROUNDING * scale))
+    }
+
+    /// What the rounding of displacements leaves in a force: more than [`EVENT_TOLERANCE`] of its scale where elements are
+    /// so stiff that the forces of the displacements themselves are far larger than those of the path.
+    pub fn rounding(self, loading: Loading<'_>, state: &State) -> f64 {
+        let of = |contact: &usize| ROUND_OFF_MULTIPLE * f64::EPSILON * loading.forces_meeting_at(*contact, state);
+        match self {
+            Self::Normal(contact) | Self::Cone { contact, .. } => of(&contact),
+            Self::Facet { corner, .. } | Self::Slide { corner } | Self::Hold { corner } | Self::Return { corner } => {
+                loading.corners[corner].contacts.iter().map(of).fold(0.0, f64::max)
+            }
+            Self::Gap(_) | Self::Sliding(_) | Self::LoadRate { .. } | Self::SurfaceEnd(_) | Self::End(_) => 0.0,
+        }
     }
 
     /// Whether a value is above [`Self::zero_within`], with a tolerance above the rounding of forces.

@@ -21,8 +21,7 @@ use crate::step::event_location::StepPoints;
 use crate::step::interpolation::PlacedPoint;
 use crate::step::singular_step;
 use crate::step::tolerances::{
-    BOUND_TOLERANCE, COINCIDENCE_TOLERANCE, EVENT_TOLERANCE, LARGEST_TURN, LARGEST_TURN_CORRECTION, SETTLED_ANGLE,
-    SMALLEST_COSINE,
+    BOUND_TOLERANCE, COINCIDENCE_TOLERANCE, LARGEST_TURN, LARGEST_TURN_CORRECTION, SETTLED_ANGLE, SMALLEST_COSINE,
 };
 
 /// The start of a step.
@@ -425,12 +424,8 @@ impl StepStart<'_> {
     }
 
     pub(crate) fn zero(&self, event_function: EventFunction, reached: &Reached) -> f64 {
-        EVENT_TOLERANCE * self.scale(event_function, reached)
-    }
-
-    fn scale(&self, event_function: EventFunction, reached: &Reached) -> f64 {
         let force_scale = self.force_scale.max(reached.corrected.force_scale);
-        event_function.scale(self.loading, &reached.corrected.state, force_scale)
+        event_function.zero(self.loading, &reached.corrected.state, force_scale)
     }
 
     pub(crate) fn passed(&self, event_functions: &[EventFunction], reached: &Reached) -> Vec<EventFunction> {

@@ -57,8 +57,9 @@ fn straight_way(trace: &PathTrace<'_>) -> Option<(EventFunction, f64)> {
         }
         let scale = event_function.scale(loading, &here.state, trace.at.totals.force_scale);
         let constant = if event_function.is_of_contact() { CONSTANT_SLOPE } else { CONSTANT_BOUND_SLOPE };
-        if change < -constant * scale {
-            if now <= VANISHING_EVENT_VALUE * scale {
+        let [rounding, rounding_ahead] = [&here.state, &ahead].map(|state| event_function.rounding(loading, state));
+        if change < -(constant * scale).max(rounding_ahead) {
+            if now <= (VANISHING_EVENT_VALUE * scale).max(rounding) {
                 return None;
             }
             let way = now / -change;

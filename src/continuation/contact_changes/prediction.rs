@@ -25,7 +25,6 @@ use crate::step::event_functions::{self, EventFunction, EventZero};
 use crate::step::event_location::StepPoints;
 use crate::step::interpolation::PlacedPoint;
 use crate::step::mode_step::{Attempt, StepStart, may_turn};
-use crate::step::tolerances::EVENT_TOLERANCE;
 
 /// A contact change, or the end of a stage, predicted by the rates.
 #[derive(Debug, Clone, Copy)]
@@ -56,9 +55,7 @@ pub(crate) fn step_to_foreseen_change(
         let slope = event_function.slope(loading, &here.modes, &here.state, rate).filter(|slope| *slope < 0.0)?;
         let value = event_function.value(loading, &here.modes, &here.state, rate);
         // A quantity that is zero at the present point has just changed.
-        let is_above =
-            event_function.is_above(loading, &here.state, value, EVENT_TOLERANCE, trace.at.totals.force_scale);
-        is_above.then(|| value / -slope)
+        (value > event_function.zero(loading, &here.state, trace.at.totals.force_scale)).then(|| value / -slope)
     };
     let event_functions = event_functions::of_mode(loading, &here.modes, &here.state, rate);
     let ways = || event_functions.iter().filter_map(|event_function| Some((*event_function, way(event_function)?)));

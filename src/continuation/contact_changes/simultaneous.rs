@@ -54,7 +54,7 @@ use crate::step::corrector::single_iteration;
 use crate::step::corrector::tangent;
 use crate::step::event_functions::{self, EventFunction};
 use crate::step::mode_step::{Attempt, Reached, StepStart, may_turn};
-use crate::step::tolerances::{COINCIDENCE_TOLERANCE, EVENT_TOLERANCE};
+use crate::step::tolerances::COINCIDENCE_TOLERANCE;
 use std::collections::BTreeSet;
 
 /// Largest number of violating contacts, relative to those of the first mode: more indicate that the modes diverge.
@@ -162,8 +162,7 @@ pub(crate) fn join_foreseen(
         single_iteration::iterated_once(&system, start.state.advanced(start.rate, step), &closing, work)?;
     let rate = single_iteration::direction_about(&system, &state, &factorisation, start.rate)?;
     let negative = |event_function: &EventFunction| {
-        start.value(*event_function, &state, &rate)
-            < -EVENT_TOLERANCE * event_function.scale(start.loading, &state, start.force_scale)
+        start.value(*event_function, &state, &rate) < -event_function.zero(start.loading, &state, start.force_scale)
     };
     let passed: Vec<EventFunction> = event_functions.iter().copied().filter(negative).collect();
     let first = joinable(start, &event_functions, &passed, step)?;
@@ -339,7 +338,7 @@ pub(crate) fn broken(start: &StepStart<'_>, modes: &[Mode], state: &State, force
     let broken =
         event_functions::of_mode(start.loading, modes, state, start.rate).into_iter().filter(|event_function| {
             let value = event_function.value(start.loading, modes, state, start.rate);
-            value < -EVENT_TOLERANCE * event_function.scale(start.loading, state, forces)
+            value < -event_function.zero(start.loading, state, forces)
         });
     broken.map(|event_function| smooth(start.loading, event_function)).collect()
 }
@@ -363,7 +362,7 @@ fn nothing_else_ends(
         let last = event_function.value(start.loading, start.modes, state, &reached.rate);
         let dips = |zero| event_function.dip(start.loading, start.modes, ends.0, ends.1, reached.step, zero).is_some();
         if event_function.is_above_zero(start.loading, state, last, COINCIDENCE_TOLERANCE, forces)
-            && !(dips(0.0) && dips(EVENT_TOLERANCE * event_function.scale(start.loading, state, forces)))
+            && !(dips(0.0) && dips(event_function.zero(start.loading, state, forces)))
         {
             continue;
         }
