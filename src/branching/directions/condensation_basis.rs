@@ -1,7 +1,7 @@
 //! How the basis of the condensation on the contacts that can change is found: the rates of the structure for unit
 //! velocities of these contacts at zero load, and the structure's own direction with zero velocities. They are the matrix
-//! `Z` and the vector `z₀` of `condensed_rate_problem` (the usual condensation on the contacts: A. Klarbring, Ing. Arch. 60 (1990)
-//! 529, doi:10.1007/BF00541909).
+//! `Z` and the vector `z₀` of `condensed_rate_problem` (the usual condensation on the contacts: A. Klarbring, Ing. Arch.
+//! 60 (1990) 529, doi:10.1007/BF00541909).
 //!
 //! Let `A` be the rate equations in which these contacts are fixed, with a last row `l`: then `A Z = v` (unit
 //! velocities in the rows of the contacts) and `A z₀ = (0, 1)`. Alternatively, let `M` be the equations of the modes
@@ -68,8 +68,9 @@ fn columns_held(
 ) -> Option<Vec<Rate>> {
     let size = equations.size;
     let count = velocities(changeable).count() + 1;
-    // The right-hand sides and their solutions.
-    let _held = budget::take::<f64>(2 * count * size);
+    // The right-hand sides, their solutions, and the rates.
+    let of_rate = equations.loading.structure.freedoms() + 4 * equations.loading.contacts.len();
+    let _held = budget::take::<f64>(count * (2 * size + of_rate));
     budget::spend(count * size);
     let mut values = Vec::with_capacity(count * size);
     let rights = velocities(changeable).map(|(contact, direction)| moving(equations, contact, direction));
@@ -85,8 +86,8 @@ fn columns_held(
     Some(values.chunks_exact(size).map(rate).collect())
 }
 
-/// The rates at the contacts by a factorisation of the equations in which they are fixed. `None` where options need more than velocities and reactions of their own contact, and where reactions depend on the motion
-/// of their nodes.
+/// The rates at the contacts by a factorisation of the equations in which they are fixed. `None` where options need more
+/// than velocities and reactions of their own contact, and where reactions depend on the motion of their nodes.
 fn rates_at_contacts<'a>(
     equations: &'a ModeSystem<'a>,
     changeable: &[Changeable],
@@ -110,7 +111,9 @@ fn rates_at_contacts<'a>(
         velocities(changeable).map(|(contact, direction)| moved(equations, contact, direction)).collect();
     let at_borders = |right: &SparseEntries| right.iter().map(|(row, value)| (row - unknowns, *value)).collect();
     let borders: Vec<SparseEntries> = rights.iter().map(at_borders).collect();
-    let _held = budget::take::<f64>(2 * count * (equations.size - unknowns));
+    // The values at the borders with their terms, and the rates.
+    let of_column = 6 * (equations.size - unknowns) + 4 * equations.loading.contacts.len();
+    let _held = budget::take::<f64>(count * of_column);
     let values = factorisation.border_values(&borders)?;
     let mut own = rate_recovery::bordering(equations);
     if !factorisation.solve(&mut own) {

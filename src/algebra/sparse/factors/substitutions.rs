@@ -2,7 +2,8 @@
 //!
 //! The values of the right-hand sides at one unknown lie side by side, in the elimination order: each entry of `L`, once
 //! read, serves all of them, and eight values are one cache line. In the forward substitution, right-hand sides with few
-//! entries, as the borders of contacts have, visit only the columns that depend on them (J. R. Gilbert, T. Peierls, SIAM J. Sci. Stat. Comput. 9 (1988) 862, doi:10.1137/0909058).
+//! entries, as the borders of contacts have, visit only the columns that depend on them (J. R. Gilbert, T. Peierls, SIAM
+//! J. Sci. Stat. Comput. 9 (1988) 862, doi:10.1137/0909058).
 //!
 //! By hand, since the library has no substitution by itself, solves for one column after another where the factor is not
 //! in blocks, and gathers rows across its columns where it is; `cargo bench --bench elimination -- solves` has the ratio.
