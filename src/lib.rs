@@ -146,9 +146,9 @@ pub use model::request::{
     Analysis, ArcLength, Certificate, Component, Contact, ContactDiscretisation, ContactRange, ContentEncoding,
     DisplacementBound, ElasticConstants, Element, ElementReference, Events, Explore, ForceRange, JobRequest,
     JumpMotion, JumpMotionKind, LoadSign, LockingMend, Material, MeshFile, MeshFormat, MeshGroup, Method, Model, Mpec,
-    NamedSet, Obstacle, OnPathEnd, PlaneCondition, Polyline, Record, RecordedContact, RecordedContacts,
-    RecordedElements, RecordedSupports, Regularised, Section, Side, Solid, SolidKind, Stage, StageControl, Surface,
-    Units, Until,
+    NamedSet, Obstacle, ObstacleRotation, OnPathEnd, PlaneCondition, Polyline, Record, RecordedContact,
+    RecordedContacts, RecordedElements, RecordedSupports, Regularised, Section, Side, Solid, SolidKind, Stage,
+    StageControl, Surface, Units, Until,
 };
 pub use model::{InputError, InputErrors, read};
 pub use resources::cancel::CancelFlag;

@@ -17,3 +17,8 @@ pub mod multi_contact;
 pub mod problem;
 pub mod rotation;
 pub mod structure;
+
+/// The dimensionless pressure, angle or translation of a degree of freedom of 1 of an auxiliary node. So large that the
+/// degree of freedom, which is no displacement of the structure, does not count in the norm of the arc length beyond
+/// round-off; a power of two, so that no digit is lost.
+pub(crate) const AUXILIARY_UNIT: f64 = 1_099_511_627_776.0;

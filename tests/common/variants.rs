@@ -80,6 +80,11 @@ pub fn in_units(mut request: JobRequest, length: f64, force: f64) -> JobRequest 
             values.iter_mut().take(dimension).for_each(|value| *value *= length);
         }
         stage.obstacle_motion.values_mut().for_each(|values| scale(values, length));
+        stage
+            .obstacle_rotation
+            .values_mut()
+            .filter_map(|turn| turn.about.as_mut())
+            .for_each(|place| scale(place, length));
         if let Some(until) = &mut stage.until
             && let Some(bound) = &mut until.displacement
         {
@@ -127,6 +132,10 @@ pub fn about_axes(mut request: JobRequest, axes: &Axes, shift: [f64; 3]) -> JobR
     for stage in &mut request.model.stages {
         for pattern in [&mut stage.forces, &mut stage.displacements, &mut stage.obstacle_motion] {
             pattern.values_mut().for_each(|vector| *vector = turned(axes, vector));
+        }
+        for turn in stage.obstacle_rotation.values_mut() {
+            turn.about.iter_mut().for_each(|point| *point = place(point));
+            turn.axis.iter_mut().for_each(|axis| *axis = turned(axes, axis));
         }
     }
     request
@@ -183,6 +192,9 @@ pub fn turned_in_plane(mut request: JobRequest, angle: f64, shift: f64) -> JobRe
                 let turned = turn(vector);
                 vector[..2].copy_from_slice(&turned);
             }
+        }
+        for rotation in stage.obstacle_rotation.values_mut() {
+            rotation.about.iter_mut().for_each(|point| *point = place(point));
         }
     }
     request

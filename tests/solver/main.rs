@@ -67,6 +67,7 @@ mod spatial;
 mod stage_ends;
 mod straight_paths;
 mod studies;
+mod turning_obstacles;
 mod unstressed;
 mod vanishing_changes;
 mod verify;

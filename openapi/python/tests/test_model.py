@@ -29,7 +29,10 @@ class Building(unittest.TestCase):
         model.ball("drum", center=(0, 2), radius=0.5, side="outside")
         model.polyline("ramp", [(0, 0), (4, 1)], rounding=0.5)
         self.assertEqual(model.contact(2, "floor", 0.3), 0)
-        model.stage("push", {1: (0, -1)}, {"n0": (0, -0.1)}, {"floor": (0, 1)}, {"load_above": 3})
+        model.stage(
+            "push", {1: (0, -1)}, {"n0": (0, -0.1)}, {"floor": (0, 1)}, {"load_above": 3},
+            obstacle_rotation={"drum": {"angle": 0.5, "about": (0, 1)}},
+        )
         self.assertEqual(model.request(max_increments=5, arc_length={"max": 0.1}), {
             "model": {
                 "dimension": 2, "name": "arch", "units": {"length": "m", "force": "kN"},
@@ -41,7 +44,8 @@ class Building(unittest.TestCase):
                 ],
                 "stages": [{
                     "name": "push", "forces": {"n1": [0, -1]}, "displacements": {"n0": [0, -0.1]},
-                    "obstacle_motion": {"floor": [0, 1]}, "until": {"load_above": 3},
+                    "obstacle_motion": {"floor": [0, 1]}, "obstacle_rotation": {"drum": {"angle": 0.5, "about": [0, 1]}},
+                    "until": {"load_above": 3},
                 }],
                 "supports": {"n0": ["x", "y"], "n2": ["y"]},
                 "obstacles": {

@@ -58,7 +58,12 @@ impl Apart {
             fastest.fold(0.0, f64::max)
         };
         let fastest = |contact: &PostedContact| {
-            if contact.motion.is_none() { length } else { length.hypot(of_stage(contact)) }
+            match contact.motion {
+                None => length,
+                // The farther from the pivot, the faster: such a gap is looked at after every increment.
+                Some(place) if posted.moving[place].is_some() => f64::INFINITY,
+                Some(_) => length.hypot(of_stage(contact)),
+            }
         };
         let fastest = posted.contacts.iter().map(fastest).collect();
         let has_row = vec![false; posted.contacts.len()];

@@ -17,7 +17,9 @@ const VERSION: u32 = 5;
 pub(super) struct PreviousPoint {
     pub displacements: Vec<MeasuredVector>,
     pub rotations: Vec<MeasuredVector>,
+    /// Translations and angles of the moving obstacles.
     pub shifts: Vec<MeasuredVector>,
+    pub turns: Vec<f64>,
     /// `-r_t/|r_t|` in space of the contacts that are on their friction cones; in 3D only.
     pub directions: BTreeMap<usize, MeasuredVector>,
     /// `slip_total` of the contacts that have slipped.
@@ -34,7 +36,8 @@ impl PreviousPoint {
         Self {
             displacements: vec![MeasuredVector::zeros(); posted.nodes.len()],
             rotations: vec![MeasuredVector::zeros(); posted.rotations()],
-            shifts: vec![MeasuredVector::zeros(); posted.moving],
+            shifts: vec![MeasuredVector::zeros(); posted.moving.len()],
+            turns: vec![0.0; posted.moving.len()],
             directions: BTreeMap::new(),
             slips: BTreeMap::new(),
             load: 0.0,
@@ -157,6 +160,7 @@ pub fn take_up(mut judge: Judge, history: JudgeHistory) -> Result<Judge, History
         displacements,
         rotations,
         shifts: loading.shifts.clone(),
+        turns: loading.turns.clone(),
         load,
         arc_length,
         released,

@@ -46,7 +46,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `errors` | the errors and their maxima |
-//! | `posted`, `elements`, `beams`, `space_beams`, `solids`, `obstacles`, `polylines`, `bodies`, `numbers` | the posted model, with indices instead of names |
+//! | `posted`, `elements`, `beams`, `space_beams`, `solids`, `obstacles`, `turning`, `polylines`, `bodies`, `numbers` | the posted model, with indices instead of names |
 //! | `contacts` | the check of one contact |
 //! | `global` | the balance of the whole structure, and the forces as reported |
 //! | `rows`, `apart` | the contacts with a row in an increment, and the contacts without a row |
@@ -67,6 +67,7 @@ pub(crate) mod posted;
 pub(crate) mod rows;
 pub(crate) mod solids;
 pub(crate) mod space_beams;
+mod turning;
 
 pub use errors::{Errors, Largest, Maxima};
 pub use history::{HistoryError, JudgeHistory};
@@ -192,7 +193,7 @@ impl Workspace {
     ) {
         match &contact.counterpart {
             Counterpart::Obstacle(_) => {
-                let force = contacts::force(state, frame);
+                let force = posted.placement(contact, &self.loading).in_space(contacts::force(state, frame));
                 self.balance[contact.node] -= force;
                 outside.add(posted, contact.node, &self.displacements[contact.node], &force);
             }
@@ -276,10 +277,12 @@ impl Judge {
             let contact = &self.posted.contacts[*index];
             let (motion, on_node) = match &contact.counterpart {
                 Counterpart::Obstacle(_) => {
-                    let moved = self.work.displacements[contact.node] - self.before.displacements[contact.node];
-                    let before = contact.motion.map_or_else(MeasuredVector::zeros, |place| self.before.shifts[place]);
-                    let shifted = self.work.loading.shift(contact) - before;
-                    (moved - shifted, contacts::force(state, frame))
+                    let place = &self.posted.nodes[contact.node].place;
+                    let here = self.posted.placement(contact, &self.work.loading);
+                    let before = self.posted.placed_at(contact, &self.before.shifts, &self.before.turns);
+                    let (moved, _) = here.relative(place, &self.work.displacements[contact.node]);
+                    let (moved_before, _) = before.relative(place, &self.before.displacements[contact.node]);
+                    (moved - moved_before, here.in_space(contacts::force(state, frame)))
                 }
                 Counterpart::Body(body) => {
                     let here = body.state(&self.work.displacements);
@@ -311,6 +314,7 @@ impl Judge {
         std::mem::swap(&mut self.before.displacements, &mut self.work.displacements);
         std::mem::swap(&mut self.before.rotations, &mut self.work.rotations);
         self.before.shifts.copy_from_slice(&self.work.loading.shifts);
+        self.before.turns.copy_from_slice(&self.work.loading.turns);
         self.before.load = increment.load_factor;
         self.before.arc_length = increment.arc_length;
         errors
@@ -327,6 +331,7 @@ impl Judge {
         self.before.displacements.clone_from(&self.work.displacements);
         self.before.rotations.clone_from(&self.work.rotations);
         self.before.shifts.copy_from_slice(&self.work.loading.shifts);
+        self.before.turns.copy_from_slice(&self.work.loading.turns);
         self.before.load = increment.load_factor;
         Errors { energy: 0.0, strain_energy: 0.0, ..self.judge(increment) }
     }

@@ -78,15 +78,16 @@ impl MeasuredObstacle {
         }
     }
 
-    /// The frame of this obstacle moved by `shift`, at a node at `place` moved by `displacement`.
+    /// The frame of this obstacle, in its axes, at a node at `place` that has moved by `relative` in these axes; `reach` is
+    /// the largest component of the motions of both.
     pub fn frame(
         &self,
         dimension: usize,
-        shift: &MeasuredVector,
         place: &MeasuredVector,
-        displacement: &MeasuredVector,
+        relative: &MeasuredVector,
+        reach: f64,
     ) -> MeasuredFrame {
-        let from = (place - self.place) + (displacement - shift);
+        let from = (place - self.place) + relative;
         let (gap, normal, size) = match &self.shape {
             ObstacleShape::Plane(normal) => (from.dot(normal), *normal, 0.0),
             ObstacleShape::Ball { radius, sign } => around_center(from, *radius, *sign),
@@ -98,7 +99,7 @@ impl MeasuredObstacle {
                 (gap, axes[0] * x + axes[1] * y, curve.size)
             }
         };
-        let reach = [place, &self.place, displacement, shift].into_iter().map(largest).fold(size, f64::max);
+        let reach = [place, &self.place].into_iter().map(largest).fold(size.max(reach), f64::max);
         MeasuredFrame { gap, rounding: 16.0 * f64::EPSILON * reach, normal, tangents: tangents(dimension, &normal) }
     }
 }

@@ -6,6 +6,7 @@ use crate::check::measure::elements::MeasuredElement;
 use crate::check::measure::numbers::{MeasuredVector, largest, padded};
 use crate::check::measure::obstacles::{MeasuredFrame, MeasuredObstacle};
 use crate::check::measure::solids::{MeasuredFace, SolidShares, pressed_surfaces};
+use crate::check::measure::turning::{MeasuredPivot, ObstaclePlacement};
 use crate::model::request::{JobRequest, Model, PlaneCondition};
 use indexmap::{IndexMap, IndexSet};
 use std::f64::consts::SQRT_2;
@@ -23,8 +24,8 @@ pub(super) struct Posted {
     pub elements: Vec<MeasuredElement>,
     pub obstacles: Vec<MeasuredObstacle>,
     pub contacts: Vec<PostedContact>,
-    /// Number of obstacles that move in some stage.
-    pub moving: usize,
+    /// For each obstacle that moves or turns in some stage, where it turns.
+    pub moving: Vec<Option<MeasuredPivot>>,
     /// The faces of each surface that some stage presses.
     pub pressed: Vec<Vec<MeasuredFace>>,
     pub stages: Vec<PostedStage>,
@@ -74,6 +75,8 @@ pub(super) struct PostedStage {
     displacements: PostedLoadPattern,
     rotations: PostedLoadPattern,
     motions: PostedLoadPattern,
+    /// Indices of turning obstacles with the angles that the load factor multiplies.
+    turns: Vec<(usize, f64)>,
     /// Places of pressed surfaces with the pressures that the load factor multiplies.
     pressures: Vec<(usize, f64)>,
     /// Load factor of a dimensionless load of 1.
@@ -91,7 +94,9 @@ pub(super) struct PostedLoading {
     /// Moments on the nodes, and prescribed rotations.
     pub moments: Vec<MeasuredVector>,
     pub rotations: Vec<MeasuredVector>,
+    /// Translation and angle of each moving obstacle.
     pub shifts: Vec<MeasuredVector>,
+    pub turns: Vec<f64>,
     /// Pressure on each pressed surface.
     pub pressures: Vec<f64>,
 }
@@ -109,7 +114,8 @@ impl Posted {
             }
             PostedNode { name: name.clone(), place: padded(place), held, has_rotation, rotation_held }
         };
-        let moved = model.stages.iter().flat_map(|stage| stage.obstacle_motion.keys());
+        let moved =
+            model.stages.iter().flat_map(|stage| stage.obstacle_motion.keys().chain(stage.obstacle_rotation.keys()));
         let moving: IndexSet<&str> = moved.map(String::as_str).collect();
         let touched = TouchedSurfaces::new(model);
         let contact = |contact: &crate::model::request::Contact| {
@@ -146,6 +152,7 @@ impl Posted {
                 stage.displacements.iter().map(|(name, values)| (name, rotation(values, model.dimension))),
             ),
             motions: pattern(&stage.obstacle_motion, &|name| moving.get_index_of(name)),
+            turns: angles(stage, &moving),
             pressures: stage
                 .pressures
                 .iter()
@@ -167,12 +174,8 @@ impl Posted {
             elements: model.elements.iter().filter_map(|element| MeasuredElement::new(model, element)).collect(),
             obstacles: model.obstacles.values().map(MeasuredObstacle::new).collect(),
             contacts: model.contacts.iter().filter_map(contact).collect(),
-            moving: moving.len(),
-            is_revolved: model
-                .elements
-                .iter()
-                .filter_map(|element| element.solid())
-                .any(|(_, solid)| solid.plane == Some(PlaneCondition::Axisymmetric)),
+            moving: moving.iter().map(|name| MeasuredPivot::of(model, name)).collect(),
+            is_revolved: is_revolved(model),
             stages: model.stages.iter().zip(scales).map(stage).collect(),
             pressed: pressed.into_values().collect(),
         }
@@ -208,7 +211,28 @@ impl Posted {
         self.nodes.len() + self.elements.iter().map(releases).sum::<usize>()
     }
 
-    /// The gap and the frame of the obstacle of a contact at the node of the contact.
+    /// Where the obstacle of a contact is.
+    pub fn placement(&self, contact: &PostedContact, loading: &PostedLoading) -> ObstaclePlacement<'_> {
+        self.placed_at(contact, &loading.shifts, &loading.turns)
+    }
+
+    /// As [`Self::placement`], by the translations and angles of all moving obstacles.
+    pub fn placed_at(
+        &self,
+        contact: &PostedContact,
+        shifts: &[MeasuredVector],
+        turns: &[f64],
+    ) -> ObstaclePlacement<'_> {
+        let Some(place) = contact.motion else {
+            return ObstaclePlacement { shift: MeasuredVector::zeros(), turned: None };
+        };
+        ObstaclePlacement {
+            shift: shifts[place],
+            turned: self.moving[place].as_ref().map(|pivot| (pivot, turns[place])),
+        }
+    }
+
+    /// The gap and the frame of the obstacle of a contact at the node of the contact, in the axes of the obstacle.
     pub fn frame(
         &self,
         contact: &PostedContact,
@@ -218,8 +242,8 @@ impl Posted {
         let place = &self.nodes[contact.node].place;
         match &contact.counterpart {
             Counterpart::Obstacle(obstacle) => {
-                let obstacle = &self.obstacles[*obstacle];
-                obstacle.frame(self.dimension, &loading.shift(contact), place, &displacements[contact.node])
+                let (relative, reach) = self.placement(contact, loading).relative(place, &displacements[contact.node]);
+                self.obstacles[*obstacle].frame(self.dimension, place, &relative, reach)
             }
             // In the axes of the surface that is touched.
             Counterpart::Body(body) => MeasuredFrame {
@@ -264,6 +288,16 @@ fn in_dimension(values: &MeasuredVector, dimension: usize) -> MeasuredVector {
     padded(&values.as_slice()[..dimension.min(3)])
 }
 
+fn angles(stage: &crate::model::request::Stage, moving: &IndexSet<&str>) -> Vec<(usize, f64)> {
+    let rotations = stage.obstacle_rotation.iter();
+    rotations.filter_map(|(name, rotation)| Some((moving.get_index_of(name.as_str())?, rotation.angle))).collect()
+}
+
+fn is_revolved(model: &Model) -> bool {
+    let mut solids = model.elements.iter().filter_map(|element| element.solid());
+    solids.any(|(_, solid)| solid.plane == Some(PlaneCondition::Axisymmetric))
+}
+
 fn pattern(posted: &IndexMap<String, Vec<f64>>, number: &dyn Fn(&str) -> Option<usize>) -> PostedLoadPattern {
     posted.iter().filter_map(|(name, values)| Some((number(name)?, padded(values)))).collect()
 }
@@ -284,14 +318,10 @@ impl PostedLoading {
             displacements: vec![MeasuredVector::zeros(); nodes],
             moments: vec![MeasuredVector::zeros(); nodes],
             rotations: vec![MeasuredVector::zeros(); nodes],
-            shifts: vec![MeasuredVector::zeros(); posted.moving],
+            shifts: vec![MeasuredVector::zeros(); posted.moving.len()],
+            turns: vec![0.0; posted.moving.len()],
             pressures: vec![0.0; posted.pressed.len()],
         }
-    }
-
-    /// The displacement of the obstacle of a contact.
-    pub fn shift(&self, contact: &PostedContact) -> MeasuredVector {
-        contact.motion.map_or_else(MeasuredVector::zeros, |place| self.shifts[place])
     }
 
     /// Sets the sum of the loads kept from the previous stages and of the loads of a stage at a load factor.
@@ -309,9 +339,13 @@ impl PostedLoading {
                 sums[*place] += values * load;
             }
         }
-        self.pressures.copy_from_slice(&held.pressures);
-        for (place, value) in &stage.pressures {
-            self.pressures[*place] += value * load;
+        let numbers =
+            [(&mut self.pressures, &held.pressures, &stage.pressures), (&mut self.turns, &held.turns, &stage.turns)];
+        for (sums, held, pattern) in numbers {
+            sums.copy_from_slice(held);
+            for (place, value) in pattern {
+                sums[*place] += value * load;
+            }
         }
     }
 }

@@ -228,7 +228,7 @@ fn leaves_no_trace(start: &StepStart<'_>, event_functions: &[EventFunction], ste
             EventFunction::LoadRate { .. } | EventFunction::End(End::Load { .. }) => true,
             EventFunction::End(_) => value > length,
             EventFunction::Gap(contact) if smooth(start.loading, *event_function).is_none() => {
-                value > length * (1.0 + size(&start.loading.pattern.shifts[contact]))
+                value > length * (1.0 + size(&start.loading.driven(contact, start.state)))
             }
             _ => smooth(start.loading, *event_function).is_some(),
         }

@@ -2,10 +2,12 @@
 
 use crate::algebra::plane_curve::PlaneCurve;
 use crate::continuation::scene::elements::ElementBuilder;
-use crate::continuation::scene::requested_contacts::Reported;
+use crate::continuation::scene::reported::Reported;
 use crate::continuation::scene::solid_loads::{LoadedSolids, add_pressure_faces, pressed_surfaces};
 use crate::continuation::scene::stage_load::StageLoad;
 use crate::continuation::scene::tolerances::{COINCIDENCE_TOLERANCE, MISSING_MOTION, SINGLE_MOTION};
+use crate::continuation::scene::turning_obstacles::TurningObstacles;
+use crate::mechanics::AUXILIARY_UNIT;
 use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::kinematics::Kinematics;
 use crate::mechanics::contact::obstacle::RigidSurface;
@@ -16,7 +18,6 @@ use crate::mechanics::problem::contact_jacobian;
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::node_contact_forces::Corner;
 use crate::mechanics::structure::Structure;
-use crate::mechanics::structure::elements::solid::pressure_face::PRESSURE_UNIT;
 use crate::model::input::limits::PENETRATION_TOLERANCE;
 use crate::model::request::{self, Analysis, Model};
 use crate::model::solids::contact_surfaces::{BodyContact, ContactSurfaces};
@@ -51,7 +52,7 @@ pub(super) fn build_structure(
     let mut elements = ElementBuilder::new(model, numbers, length, force).build();
     let pressed = pressed_surfaces(model);
     add_pressure_faces(model, &pressed, length, &mut elements);
-    let nodes = model.nodes.len() + pressed.len();
+    let nodes = model.nodes.len() + pressed.len() + TurningObstacles::of(model).auxiliary_nodes();
     supports.extend((model.nodes.len()..nodes).flat_map(|auxiliary| (0..dimension).map(move |k| (auxiliary, k))));
     Structure::like(like, dimension, nodes, &supports, elements)
 }
@@ -68,7 +69,7 @@ pub(super) fn build_contacts(
     model: &Model,
     numbers: &HashMap<&str, usize>,
     length: f64,
-    structure: &Structure,
+    (structure, turning): (&Structure, &TurningObstacles<'_>),
     left_out: &mut Vec<LeftOut>,
 ) -> Contacts {
     let mut contacts: Vec<ContactPair> = Vec::new();
@@ -90,13 +91,14 @@ pub(super) fn build_contacts(
                 // What was checked makes a contact.
                 Err(_) => continue,
             },
-            None => build_contact(model, contact, node_number, length, structure, &curves),
+            None => {
+                let kinematics = turning.kinematics(model, contact, node_number, length);
+                let built = build_contact(model, contact, node_number, length, structure, &curves);
+                ContactPair { kinematics: kinematics.unwrap_or(Kinematics::Node(node_number)), ..built }
+            }
         };
         if !built.friction.is_rough() && contact.friction > 0.0 {
-            left_out.push(LeftOut {
-                what: format!("friction of {} on {}", contact.node, contact.counterpart()),
-                why: "the node's supports leave it no motion along the obstacle".to_owned(),
-            });
+            left_out.push(friction_left_out(contact));
         }
         let (node, obstacle) = (Arc::from(contact.node.as_str()), Arc::from(contact.counterpart()));
         let moves_with = |other: &request::Contact| {
@@ -113,7 +115,10 @@ pub(super) fn build_contacts(
             .min();
         let place = twin.unwrap_or(contacts.len());
         if twin.is_none() {
-            neighbours.push(place);
+            // What touches bodies, or obstacles that turn, is in axes of its own.
+            if built.kinematics.node().is_some() {
+                neighbours.push(place);
+            }
             alike.entry(ordered(gap)).or_default().push(place);
             contacts.push(built);
             contact_names.push((Arc::clone(&node), Arc::clone(&obstacle)));
@@ -130,16 +135,24 @@ pub(super) fn build_contacts(
         });
     }
     share_among_coincident(model, &mut contacts, &members, &mut reported);
-    // In the order of the contacts, so that the numbering does not depend on a hash.
-    let corners = contacts
-        .iter()
-        .enumerate()
-        .filter_map(|(index, contact)| {
-            of_node.get(&contact.kinematics.node()?).filter(|all| all.len() > 1 && all[0] == index)
-        })
-        .map(|contacts| Corner { contacts: contacts.clone() })
-        .collect();
+    let corners = corners(&contacts, &of_node);
     Contacts { contacts, contact_names, reported, corners }
+}
+
+fn friction_left_out(contact: &request::Contact) -> LeftOut {
+    LeftOut {
+        what: format!("friction of {} on {}", contact.node, contact.counterpart()),
+        why: "the node's supports leave it no motion along the obstacle".to_owned(),
+    }
+}
+
+/// The nodes with several contacts, in the order of these, so that the numbering does not depend on a hash.
+fn corners(contacts: &[ContactPair], of_node: &HashMap<usize, Vec<usize>>) -> Vec<Corner> {
+    let of_contact = |(index, contact): (usize, &ContactPair)| {
+        let all = of_node.get(&contact.kinematics.node()?)?;
+        (all.len() > 1 && all[0] == index).then(|| Corner { contacts: all.clone() })
+    };
+    contacts.iter().enumerate().filter_map(of_contact).collect()
 }
 
 /// Divides the reaction of each contact among the coincident contacts of the request that it stands for.
@@ -216,8 +229,8 @@ fn coincide(first: &ContactPair, second: &ContactPair) -> bool {
             _,
         ) => false,
     };
-    first.kinematics.node().is_some()
-        && first.kinematics.node() == second.kinematics.node()
+    first.kinematics.own_nodes().len() == 1
+        && first.kinematics.nodes() == second.kinematics.nodes()
         && surfaces
         && (first.initial_gap - second.initial_gap).abs() <= COINCIDENCE_TOLERANCE
 }
@@ -364,6 +377,7 @@ pub(super) struct ScaledModel<'a> {
     pub numbers: &'a HashMap<&'a str, usize>,
     pub structure: &'a Structure,
     pub loaded_solids: &'a LoadedSolids<'a>,
+    pub turning: &'a TurningObstacles<'a>,
     /// For each contact that is solved for, its contact in the request.
     pub first_contacts: &'a [usize],
     pub length: f64,
@@ -391,9 +405,39 @@ impl ScaledModel<'_> {
         let on_nodes = largest(&stage.forces).max(largest_moment / self.length);
         let by_force = resistance / on_nodes.max(self.loaded_solids.largest_resultant(stage));
         let driven = displacements.iter().map(|(_, values)| norm(values)).fold(0.0_f64, f64::max);
-        let by_motion = self.length / driven.max(largest(&stage.obstacle_motion));
+        let turned = stage.obstacle_rotation.values().fold(0.0_f64, |most, turn| most.max(turn.angle.abs()));
+        let by_motion = self.length / driven.max(largest(&stage.obstacle_motion)).max(turned * self.length);
         let natural = by_force.min(by_motion);
         if natural.is_finite() { natural } else { 1.0 }
+    }
+
+    /// What a stage prescribes of each degree of freedom: displacements of supports, pressures and obstacles that turn by
+    /// their auxiliary nodes. Empty where no stage prescribes anything.
+    fn driven_supports(
+        &self,
+        stage: &request::Stage,
+        displacements: &[(usize, Vec<f64>)],
+        load_scale: f64,
+    ) -> Vec<f64> {
+        let &ScaledModel { model, structure, length, force, .. } = self;
+        let moves = |stage: &request::Stage| stage.displacements.values().flatten().any(|value| *value != 0.0);
+        let is_driven = |stage: &request::Stage| moves(stage) || !stage.pressures.is_empty();
+        if self.turning.is_empty() && !model.stages.iter().any(is_driven) {
+            return Vec::new();
+        }
+        let mut supports = vec![0.0; structure.freedoms()];
+        for (node, values) in displacements {
+            let freedoms = structure.freedoms_of(*node);
+            freedoms.zip(values).for_each(|(freedom, value)| supports[freedom] = value * load_scale / length);
+        }
+        for (place, pressure) in self.loaded_solids.pressures(stage) {
+            let freedom = structure.freedoms_of(model.nodes.len() + place).start;
+            supports[freedom] = pressure * load_scale / force * length * length / AUXILIARY_UNIT;
+        }
+        self.turning.each_support(stage, structure, |freedom, value, is_length| {
+            supports[freedom] = value * load_scale / if is_length { length } else { 1.0 } / AUXILIARY_UNIT;
+        });
+        supports
     }
 
     /// The criteria that end a stage.
@@ -421,15 +465,15 @@ impl ScaledModel<'_> {
 
 /// Builds the load of a stage; `resistance` is the force on which its load scale is based.
 pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &ScaledModel<'_>) -> StageLoad {
-    let &ScaledModel { model, analysis, numbers, structure, loaded_solids, first_contacts, length, force, stretched } =
-        scaled;
+    let &ScaledModel { model, analysis, numbers, structure, loaded_solids, turning, length, force, .. } = scaled;
+    let first_contacts = scaled.first_contacts;
     // Forces and motions of supports, and shifts of obstacles.
     let held = budget::take::<f64>(2 * structure.freedoms() + 3 * first_contacts.len());
     budget::spend(structure.freedoms());
     let displacements: Vec<(usize, Vec<f64>)> = scaled.prescribed(stage);
     let natural = scaled.natural_load_scale(stage, resistance, &displacements);
     let load_scale = analysis.arc_length.load_scale.unwrap_or(natural);
-    let enlarged = stretched.max(load_scale / natural).max(1.0);
+    let enlarged = scaled.stretched.max(load_scale / natural).max(1.0);
     let mut forces = vec![0.0; structure.freedoms()];
     for (name, vector) in &stage.forces {
         let freedoms = structure.translations_of(numbers[name.as_str()]);
@@ -443,22 +487,12 @@ pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scal
         let rotation = structure.numbering.rotations_of(numbers[name.as_str()]).start;
         forces[rotation] = moment * load_scale / force / length;
     }
-    let moves = |stage: &request::Stage| stage.displacements.values().flatten().any(|value| *value != 0.0);
-    let supports_move = model.stages.iter().any(|stage| moves(stage) || !stage.pressures.is_empty());
-    let mut supports = vec![0.0; if supports_move { structure.freedoms() } else { 0 }];
-    if supports_move {
-        for (node, values) in &displacements {
-            let freedoms = structure.freedoms_of(*node);
-            freedoms.zip(values).for_each(|(freedom, value)| supports[freedom] = value * load_scale / length);
-        }
-        for (place, pressure) in loaded_solids.pressures(stage) {
-            let freedom = structure.freedoms_of(model.nodes.len() + place).start;
-            supports[freedom] = pressure * load_scale / force * length * length / PRESSURE_UNIT;
-        }
-    }
+    let supports = scaled.driven_supports(stage, &displacements, load_scale);
     let shift = |contact: &request::Contact| {
         let mut shift: Vector = [0.0; 3];
-        if let Some(motion) = stage.obstacle_motion.get(&contact.obstacle) {
+        // The motion of an obstacle that turns is within the kinematics of its contacts.
+        let motion = stage.obstacle_motion.get(&contact.obstacle);
+        if let Some(motion) = motion.filter(|_| !turning.has(&contact.obstacle)) {
             motion.iter().enumerate().for_each(|(k, value)| shift[k] = value * load_scale / length);
         }
         shift

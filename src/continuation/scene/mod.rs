@@ -17,13 +17,13 @@ pub(crate) mod characteristic_stiffness;
 mod elements;
 pub(crate) mod omitted_features;
 pub(crate) mod recorded_contacts;
-pub(crate) mod recorded_forces;
-pub(crate) mod requested_contacts;
+pub(crate) mod reported;
 pub(crate) mod scales;
 mod solid_loads;
 mod solid_scales;
 pub(crate) mod stage_load;
 pub(crate) mod tolerances;
+mod turning_obstacles;
 mod warnings;
 
 use crate::mechanics::contact::ContactPair;
@@ -37,13 +37,14 @@ use crate::result::nodal_values::NodalValues;
 use crate::result::plan::Plan;
 use build::{Contacts, ScaledModel, build_contacts, build_stage, build_structure, first_contacts};
 use indexmap::IndexSet;
-use recorded_forces::RecordedForces;
-pub(crate) use requested_contacts::Reported;
+use reported::RecordedForces;
+pub(crate) use reported::Reported;
 use scales::{RequestScales, scales};
 use solid_loads::LoadedSolids;
 pub(crate) use stage_load::StageLoad;
 use std::collections::HashMap;
 use std::sync::Arc;
+use turning_obstacles::TurningObstacles;
 
 /// The data of a path; shared by all paths of the scene.
 #[derive(Debug, Clone)]
@@ -169,8 +170,9 @@ impl Scene {
             structure = structure.with_elements(&parts.elements);
         }
         let mut left_out = Vec::new();
+        let turning = TurningObstacles::of(model);
         let Contacts { mut contacts, mut contact_names, mut reported, corners } =
-            build_contacts(model, &numbers, length, &structure, &mut left_out);
+            build_contacts(model, &numbers, length, (&structure, &turning), &mut left_out);
         let first_contacts = first_contacts(&reported, contacts.len());
         for (node, obstacle, contact) in parts.contacts {
             let (node, obstacle) = (Arc::<str>::from(node), Arc::<str>::from(obstacle));
@@ -192,6 +194,7 @@ impl Scene {
             numbers: &numbers,
             structure: &structure,
             loaded_solids: &loaded_solids,
+            turning: &turning,
             first_contacts: &first_contacts,
             length,
             force,

@@ -7,6 +7,7 @@ use crate::continuation::scene::characteristic_stiffness::resisting;
 use crate::continuation::scene::solid_loads::LoadedSolids;
 use crate::continuation::scene::solid_scales::solid_scales;
 use crate::continuation::scene::tolerances::{LARGEST_STIFFNESS_RATIO, SIMILAR_STIFFNESS_RATIO};
+use crate::continuation::scene::turning_obstacles::TurningObstacles;
 use crate::mechanics::structure::Structure;
 use crate::model::check::scope::size;
 use crate::model::request::{self, Analysis, Model};
@@ -46,6 +47,20 @@ pub(super) fn expected_load_factor(stage: &request::Stage) -> f64 {
     bounds.flatten().chain(stage.history.iter().copied()).map(f64::abs).reduce(f64::max).unwrap_or(1.0)
 }
 
+/// For each obstacle that turns, the longest way from its pivot to a node in front of it.
+fn longest_arms(model: &Model) -> HashMap<&str, f64> {
+    let turning = model.turning_obstacles();
+    let mut arms: HashMap<&str, f64> = HashMap::new();
+    for contact in &model.contacts {
+        let Some((name, pivot)) = turning.get_key_value(contact.obstacle.as_str()) else { continue };
+        let way: Vec<f64> =
+            model.nodes[&contact.node].iter().zip(pivot.place).map(|(place, from)| place - from).collect();
+        let longest = arms.entry(name).or_default();
+        *longest = longest.max(norm(&way));
+    }
+    arms
+}
+
 fn least(values: &[f64]) -> f64 {
     values.iter().fold(f64::INFINITY, |least, value| least.min(*value))
 }
@@ -70,6 +85,7 @@ impl Sizes {
             }
         }
         let (mut largest_load, mut largest_motion) = (0.0_f64, 0.0_f64);
+        let arms = longest_arms(model);
         for stage in &model.stages {
             let factor = expected_load_factor(stage);
             for force in stage.forces.values() {
@@ -77,6 +93,10 @@ impl Sizes {
             }
             for motion in stage.displacements.values().chain(stage.obstacle_motion.values()) {
                 largest_motion = largest_motion.max(factor * norm(motion));
+            }
+            for (name, rotation) in &stage.obstacle_rotation {
+                let arm = arms.get(name.as_str()).copied().unwrap_or(0.0);
+                largest_motion = largest_motion.max(factor * rotation.angle.abs() * arm);
             }
         }
         Self { longest, bars, springs, largest_load, largest_motion }
@@ -172,7 +192,9 @@ pub(super) fn scales(
         return RequestScales { length, force, resistances, stretched: length / own, structure: None };
     }
     let structure = build_structure(model, numbers, length, force, like);
-    let Contacts { contacts, reported, .. } = build_contacts(model, numbers, length, &structure, &mut Vec::new());
+    let turning = TurningObstacles::of(model);
+    let Contacts { contacts, reported, .. } =
+        build_contacts(model, numbers, length, (&structure, &turning), &mut Vec::new());
     let first_contacts = first_contacts(&reported, contacts.len());
     let first_contacts = &first_contacts[..];
     let scaled = ScaledModel {
@@ -181,6 +203,7 @@ pub(super) fn scales(
         numbers,
         structure: &structure,
         loaded_solids,
+        turning: &turning,
         first_contacts,
         length,
         force,

@@ -10,6 +10,7 @@ use crate::continuation::scene::characteristic_stiffness::load_at_unit_displacem
 use crate::continuation::scene::elements::ElementBuilder;
 use crate::continuation::scene::scales::{MOST_STAGES, RequestScales, expected_load_factor};
 use crate::continuation::scene::solid_loads::LoadedSolids;
+use crate::continuation::scene::turning_obstacles::TurningObstacles;
 use crate::mechanics::structure::Structure;
 use crate::model::check::scope::size;
 use crate::model::request::{Analysis, Material, Model};
@@ -42,7 +43,8 @@ pub(super) fn solid_scales(
     }
     let (own, force) = (size(model), stretching_force(model, numbers));
     let structure = build_structure(model, numbers, own, force, like);
-    let contacts = build_contacts(model, numbers, own, &structure, &mut Vec::new());
+    let turning = TurningObstacles::of(model);
+    let contacts = build_contacts(model, numbers, own, (&structure, &turning), &mut Vec::new());
     let first_contacts = &first_contacts(&contacts.reported, contacts.contacts.len())[..];
     let scaled = ScaledModel {
         model,
@@ -50,6 +52,7 @@ pub(super) fn solid_scales(
         numbers,
         structure: &structure,
         loaded_solids,
+        turning: &turning,
         first_contacts,
         length: own,
         force,

@@ -14,6 +14,7 @@ pub mod kinematics;
 pub mod least_norm_projection;
 pub mod obstacle;
 pub(crate) mod tolerances;
+pub mod turning_obstacle;
 pub mod vector;
 
 use coulomb::CoulombFriction;

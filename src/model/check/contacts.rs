@@ -70,6 +70,9 @@ pub(super) fn contacts(scope: &Scope, curves: &Curves, mistakes: &mut Mistakes) 
         }
         let obstacle = scope.obstacle(&contact.obstacle, &at.member("obstacle"), mistakes);
         let (Some(node), Some((number, obstacle))) = (node, obstacle) else { continue };
+        if contact.friction > 0.0 && scope.turning.contains_key(contact.obstacle.as_str()) {
+            dragged_by_turning(scope, contact, node, &at.member("friction"), mistakes);
+        }
         let Some(facing) = facing(scope, node, obstacle, curves[number].as_ref()) else { continue };
         if !useful(scope, contact, node, obstacle, &facing, &at, mistakes) {
             continue;
@@ -86,6 +89,21 @@ pub(super) fn contacts(scope: &Scope, curves: &Curves, mistakes: &mut Mistakes) 
             others.push(gap);
         }
     }
+}
+
+/// Notes friction between a supported component and an obstacle that turns: the support would bear a traction that is no
+/// unknown of the path.
+fn dragged_by_turning(scope: &Scope, contact: &Contact, node: usize, at: &DocumentPlace, mistakes: &mut Mistakes) {
+    if (0..scope.model.dimension).all(|component| scope.is_free(node, component)) {
+        return;
+    }
+    mistakes.add(at, || {
+        let (node, obstacle) = (quoted(&contact.node), quoted(&contact.obstacle));
+        format!(
+            "{node} is supported, and {obstacle} turns; friction on such a support is not available: leave its components \
+             free and hold it by a spring, or give friction 0"
+        )
+    });
 }
 
 /// The pairs of nodes that contacts of bodies couple: of each the nodes on its own side, three in the plane and some nine in

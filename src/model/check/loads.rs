@@ -6,7 +6,7 @@ use crate::model::check::solids;
 use crate::model::check::structure::COMPONENT_NAMES;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::quoted;
-use crate::model::request::{Obstacle, Stage};
+use crate::model::request::{Obstacle, ObstaclePivot, Stage};
 
 /// A motion whose component along the normal is at most this part of its length is parallel to the plane.
 const ALONG: f64 = 8.0 * f64::EPSILON;
@@ -65,14 +65,17 @@ pub(super) fn loads(scope: &Scope, around: &Surroundings, stage: &Stage, at: &Do
     loaded |= displacements(scope, around, stage, &at.member("displacements"), mistakes);
     loaded |= solids::loads(scope, stage, at, mistakes);
     loaded |= motions(scope, around, stage, &at.member("obstacle_motion"), mistakes);
+    loaded |= rotations(scope, around, stage, &at.member("obstacle_rotation"), mistakes);
     if !loaded && mistakes.count() == before {
-        let only_forces =
-            stage.moments.is_empty() && stage.displacements.is_empty() && stage.obstacle_motion.is_empty();
+        let only_forces = stage.moments.is_empty()
+            && stage.displacements.is_empty()
+            && stage.obstacle_motion.is_empty()
+            && stage.obstacle_rotation.is_empty();
         let at = if only_forces && !stage.forces.is_empty() { &forces_at } else { at };
         mistakes.add(at, || {
             "the stage has no load; a force, a body force, a traction or a pressure that is not zero on a free component, a moment on a rotation that is free, a \
-             displacement of a support that an element joins to a free component, or a motion of an obstacle against a \
-             contact (along itself only with friction) is expected"
+             displacement of a support that an element joins to a free component, or a motion or rotation of an obstacle \
+             against a contact (along itself only with friction) is expected"
         });
     }
 }
@@ -182,18 +185,99 @@ fn motions(scope: &Scope, around: &Surroundings, stage: &Stage, at: &DocumentPla
         if !sane || largest(motion) == 0.0 {
             continue;
         }
-        match around.used[number] {
-            Use::None => mistakes.add(&at, || {
+        loaded |= acts(around.used[number], name, &at, mistakes, || !slides_along(obstacle, motion));
+    }
+    loaded
+}
+
+/// Whether a motion of an obstacle has an effect; `changes_shape` tells whether it is not mapped onto itself.
+fn acts(
+    used: Use,
+    name: &str,
+    at: &DocumentPlace,
+    mistakes: &mut Mistakes,
+    changes_shape: impl FnOnce() -> bool,
+) -> bool {
+    match used {
+        Use::None => {
+            mistakes.add(at, || {
                 let name = quoted(name);
                 format!(
                     "no node has a contact with {name}, so its motion does nothing; add one, or leave the motion out"
                 )
-            }),
-            Use::Frictionless => loaded |= !slides_along(obstacle, motion),
-            Use::Frictional => loaded = true,
+            });
+            false
+        }
+        Use::Frictionless => changes_shape(),
+        Use::Frictional => true,
+    }
+}
+
+fn rotations(scope: &Scope, around: &Surroundings, stage: &Stage, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
+    let mut loaded = false;
+    let dimension = scope.model.dimension;
+    for (name, rotation) in &stage.obstacle_rotation {
+        let at = at.member(name);
+        let found = scope.obstacle(name, &at, mistakes);
+        let before = mistakes.count();
+        numbers::number(rotation.angle, &at.member("angle"), mistakes);
+        if let Some(about) = &rotation.about {
+            numbers::vector(about, dimension, &at.member("about"), mistakes);
+        }
+        if let Some(axis) = &rotation.axis {
+            let at = at.member("axis");
+            if dimension == 2 {
+                mistakes.add(&at, || "in the plane obstacles turn about a point; leave the axis out");
+            } else if numbers::vector(axis, dimension, &at, mistakes) && largest(axis) == 0.0 {
+                mistakes.add(&at, || "the axis is zero; a vector along it is expected");
+            }
+        }
+        let Some((number, obstacle)) = found else { continue };
+        if rotation.about.is_none() && matches!(obstacle, Obstacle::Polyline(_)) {
+            mistakes.add(&at, || "a polyline turns about a point that is given; `about` is expected");
+        }
+        let has_axis = rotation.axis.is_some() || matches!(obstacle, Obstacle::Cylinder { .. });
+        if dimension == 3 && !has_axis {
+            mistakes.add(&at, || "in space an obstacle turns about an axis; `axis` is expected");
+        }
+        if mistakes.count() > before {
+            continue;
+        }
+        let pivot = rotation.pivot(obstacle, dimension);
+        if scope.turning.get(name.as_str()).is_some_and(|first| Some(*first) != pivot) {
+            mistakes.add(&at, || {
+                let name = quoted(name);
+                format!("{name} turns about another point or axis in an earlier stage; the same is expected in all")
+            });
+            continue;
+        }
+        if rotation.angle != 0.0 {
+            let turns = || pivot.is_none_or(|pivot| !turns_onto_itself(obstacle, &pivot));
+            loaded |= acts(around.used[number], name, &at, mistakes, turns);
         }
     }
     loaded
+}
+
+/// Whether a rotation maps the obstacle onto itself: it then has no effect without friction.
+fn turns_onto_itself(obstacle: &Obstacle, pivot: &ObstaclePivot) -> bool {
+    let away = |from: &[f64]| {
+        let mut way = pivot.place.map(|part| -part);
+        way.iter_mut().zip(from).for_each(|(way, part)| *way += part);
+        let along = dot(&way, &pivot.axis);
+        let off: Vec<f64> = way.iter().zip(&pivot.axis).map(|(way, axis)| way - along * axis).collect();
+        norm(&off)
+    };
+    let is_along = |direction: &[f64]| {
+        let along = dot(direction, &pivot.axis) / norm(direction);
+        1.0 - along.abs() <= ALONG
+    };
+    match obstacle {
+        Obstacle::Ball { center, .. } => away(center) == 0.0,
+        Obstacle::Cylinder { point, axis, .. } => is_along(axis) && away(point) == 0.0,
+        Obstacle::Plane { normal, .. } => normal.len() == 3 && is_along(normal),
+        Obstacle::Polyline(_) => false,
+    }
 }
 
 /// Whether the motion maps the obstacle onto itself: a plane that moves along itself and a cylinder along its axis have no

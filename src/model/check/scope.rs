@@ -5,7 +5,8 @@ use crate::model::check::numbers;
 use crate::model::input::limits::{MAX_NAME_BYTES, PENETRATION_TOLERANCE};
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{quoted, suggestion};
-use crate::model::request::Obstacle;
+use crate::model::request::{Obstacle, ObstaclePivot};
+use indexmap::IndexMap;
 
 /// The model with tables that several checks use. Only its dimension, 2 or 3, has been checked.
 pub(crate) struct Scope<'a> {
@@ -15,6 +16,8 @@ pub(crate) struct Scope<'a> {
     pub supported: Vec<[bool; 6]>,
     /// For each node, whether it has a rotation.
     pub rotating: Vec<bool>,
+    /// The obstacles that turn.
+    pub turning: IndexMap<&'a str, ObstaclePivot>,
     /// Diagonal of the box around the well-formed nodes; 0 for a single node.
     pub size: f64,
 }
@@ -29,7 +32,8 @@ impl<'a> Scope<'a> {
                 }
             }
         }
-        Self { model, at, supported, rotating: model.rotating_nodes(), size: size(model) }
+        let turning = model.turning_obstacles();
+        Self { model, at, supported, rotating: model.rotating_nodes(), turning, size: size(model) }
     }
 
     /// The number of a node; notes an unknown name.

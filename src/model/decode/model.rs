@@ -7,8 +7,8 @@ use crate::model::decode::reader::{Choices, Fields, Input, count, number, number
 use crate::model::decode::{meshes, obstacles, solids};
 use crate::model::input::mistakes::Mistakes;
 use crate::model::request::{
-    BendingStiffness, Component, Contact, ContactDiscretisation, DisplacementBound, Element, Model, Stage,
-    StageControl, Strain, Units, Until,
+    BendingStiffness, Component, Contact, ContactDiscretisation, DisplacementBound, Element, Model, ObstacleRotation,
+    Stage, StageControl, Strain, Units, Until,
 };
 
 const MODEL: Fields = Fields {
@@ -83,6 +83,7 @@ const STAGE: Fields = Fields {
         "tractions",
         "pressures",
         "obstacle_motion",
+        "obstacle_rotation",
         "until",
         "control",
         "history",
@@ -90,6 +91,9 @@ const STAGE: Fields = Fields {
     ],
     later: &[],
 };
+
+const OBSTACLE_ROTATION: Fields =
+    Fields { what: "a rotation of an obstacle", known: &["angle", "about", "axis"], later: &[] };
 
 const STAGE_CONTROL: Choices<StageControl> = Choices {
     what: "a control of a stage",
@@ -350,6 +354,10 @@ fn stage(input: &Input, mistakes: &mut Mistakes) -> Option<Stage> {
     let pressures =
         object.with_default("pressures", Default::default(), mistakes, |input, mistakes| input.map(mistakes, number));
     let obstacle_motion = object.with_default("obstacle_motion", Default::default(), mistakes, vectors);
+    let obstacle_rotation =
+        object.with_default("obstacle_rotation", Default::default(), mistakes, |input, mistakes| {
+            input.map(mistakes, obstacle_rotation)
+        });
     let until = object.optional("until", mistakes, until);
     let control = object.with_default("control", Default::default(), mistakes, |input, mistakes| {
         input.choice(&STAGE_CONTROL, mistakes)
@@ -365,11 +373,20 @@ fn stage(input: &Input, mistakes: &mut Mistakes) -> Option<Stage> {
         tractions: tractions?,
         pressures: pressures?,
         obstacle_motion: obstacle_motion?,
+        obstacle_rotation: obstacle_rotation?,
         until: until?,
         control: control?,
         history: history?,
         cycles: cycles?,
     })
+}
+
+fn obstacle_rotation(input: &Input, mistakes: &mut Mistakes) -> Option<ObstacleRotation> {
+    let object = input.object(&OBSTACLE_ROTATION, mistakes)?;
+    let angle = object.required("angle", mistakes, number);
+    let about = object.optional("about", mistakes, numbers);
+    let axis = object.optional("axis", mistakes, numbers);
+    Some(ObstacleRotation { angle: angle?, about: about?, axis: axis? })
 }
 
 fn load_history(input: &Input, mistakes: &mut Mistakes) -> Option<Vec<f64>> {

@@ -155,8 +155,15 @@ fn stage() -> impl Strategy<Value = Stage> {
     let on_solids = (map(numbers()), map(numbers()), map(number()));
     let control =
         (of(until()), one_of([StageControl::Path, StageControl::Load]), vec(number(), 0..3), of(any::<u64>()));
-    (name(), map(numbers()), map(number()), map(numbers()), on_solids, map(numbers()), control).prop_map(
-        |(name, forces, moments, displacements, on_solids, obstacle_motion, (until, control, history, cycles))| {
+    let rotation = (number(), of(numbers()), of(numbers())).prop_map(|(angle, about, axis)| ObstacleRotation {
+        angle,
+        about,
+        axis,
+    });
+    let of_obstacles = (map(numbers()), map(rotation));
+    (name(), map(numbers()), map(number()), map(numbers()), on_solids, of_obstacles, control).prop_map(
+        |(name, forces, moments, displacements, on_solids, of_obstacles, (until, control, history, cycles))| {
+            let (obstacle_motion, obstacle_rotation) = of_obstacles;
             let (body_forces, tractions, pressures) = on_solids;
             Stage {
                 name,
@@ -167,6 +174,7 @@ fn stage() -> impl Strategy<Value = Stage> {
                 tractions,
                 pressures,
                 obstacle_motion,
+                obstacle_rotation,
                 until,
                 control,
                 history,

@@ -30,10 +30,11 @@ pub use record::{
     ContactRange, ElementReference, ForceRange, Record, RecordedContact, RecordedContacts, RecordedElements,
     RecordedSupports,
 };
+pub(crate) use structure::ObstaclePivot;
 pub use structure::{
     BendingStiffness, Component, Contact, ContactDiscretisation, ContentEncoding, DisplacementBound, ElasticConstants,
-    Element, Material, MeshFile, MeshFormat, MeshGroup, Model, NamedSet, Obstacle, PlaneCondition, Polyline, Section,
-    Side, Solid, Stage, StageControl, Surface, Units, Until,
+    Element, Material, MeshFile, MeshFormat, MeshGroup, Model, NamedSet, Obstacle, ObstacleRotation, PlaneCondition,
+    Polyline, Section, Side, Solid, Stage, StageControl, Surface, Units, Until,
 };
 
 /// A model and how to trace it.

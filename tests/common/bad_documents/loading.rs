@@ -31,6 +31,20 @@ pub fn motions() -> Vec<BadDocument> {
     let along = [none.clone(), ("/model/contacts/0/friction", json!(0)), (motion, json!({"floor": [1, 0]}))];
     let still = [none, (displacements, json!({"pin": [0, 0]})), (motion, json!({"floor": [0, 0]}))];
     let unused = [("/model/obstacles/block", block), (motion, json!({"block": [-1, 0]}))];
+    let rotation = "/model/stages/0/obstacle_rotation";
+    let idle = [unused[0].clone(), (rotation, json!({"block": {"angle": 1}}))];
+    let points = json!({"kind": "polyline", "points": [[0, -9], [1, -9]]});
+    let curve = [
+        ("/model/obstacles/curve", points),
+        ("/model/contacts/-", json!({"node": "tip", "obstacle": "curve"})),
+        (rotation, json!({"curve": {"angle": 1}})),
+    ];
+    let tilt = |about: Value| json!({"floor": {"angle": 0.1, "about": about}});
+    let pivots = [
+        (rotation, tilt(json!([0, 0]))),
+        ("/model/stages/-", json!({"name": "tilt", "obstacle_rotation": tilt(json!([0, 1]))})),
+    ];
+    let dragged = [(rotation, tilt(json!([0, 0]))), ("/model/supports/tip", json!(["x"]))];
     vec![
         at("displacement of an unknown node", displacements, json!({"pit": [1, 0]}), "did you mean `pin`?")
             .told("/model/stages/0/displacements/pit"),
@@ -52,6 +66,25 @@ pub fn motions() -> Vec<BadDocument> {
         at("huge motion", motion, json!({"floor": [0, -1e80]}), "choose other units")
             .told("/model/stages/0/obstacle_motion/floor/1"),
         elsewhere("motion without contact", &unused, "/model/stages/0/obstacle_motion/block", "does nothing; add one"),
+        at("rotation of an unknown obstacle", rotation, json!({"flor": {"angle": 1}}), "did you mean `floor`?")
+            .told("/model/stages/0/obstacle_rotation/flor"),
+        at("rotation without an angle", rotation, json!({"floor": {"about": [0, 0]}}), "angle")
+            .told("/model/stages/0/obstacle_rotation/floor"),
+        at("rotation as a number", rotation, json!({"floor": 1}), "a rotation of an obstacle, an object")
+            .told("/model/stages/0/obstacle_rotation/floor"),
+        at("rotation about a short vector", rotation, json!({"floor": {"angle": 1, "about": [1]}}), "found 1 numbers")
+            .told("/model/stages/0/obstacle_rotation/floor/about"),
+        at("axis in the plane", rotation, json!({"floor": {"angle": 1, "axis": [0, 0, 1]}}), "leave the axis out")
+            .told("/model/stages/0/obstacle_rotation/floor/axis"),
+        elsewhere(
+            "rotation without contact",
+            &idle,
+            "/model/stages/0/obstacle_rotation/block",
+            "does nothing; add one",
+        ),
+        elsewhere("polyline about nothing", &curve, "/model/stages/0/obstacle_rotation/curve", "`about` is expected"),
+        elsewhere("another pivot", &pivots, "/model/stages/1/obstacle_rotation/floor", "about another point or axis"),
+        elsewhere("friction on a support", &dragged, "/model/contacts/0/friction", "hold it by a spring"),
         elsewhere("no load: a support apart", &alone, stage, "no load"),
         elsewhere("no load: a plane along itself", &along, stage, "no load"),
         elsewhere("no load: nothing moves", &still, stage, "no load"),

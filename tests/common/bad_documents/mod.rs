@@ -97,6 +97,7 @@ pub fn full_request() -> Value {
                 {"name": "sink", "displacements": {"pin": [0, 0, -0.1], "ring": [0.1, 0, 0]},
                  "until": {"displacement": {"node": "ring", "component": "x", "above": 0.05}}},
                 {"name": "drag", "obstacle_motion": {"floor": [1, 0, 0], "drum": [1, 0, 0], "bowl": [0, 0, 0]},
+                 "obstacle_rotation": {"drum": {"angle": 0.1, "about": [0, 0, 0], "axis": [0, 1, 0]}},
                  "forces": {"tip": [1, 0, 0]}, "until": {"load_above": 1}},
             ],
         },

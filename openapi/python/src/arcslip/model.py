@@ -312,10 +312,12 @@ class Model:
         control: Optional[str] = None,
         history: Optional[Sequence[float]] = None,
         cycles: Optional[int] = None,
+        obstacle_rotation: Optional[Mapping[str, Mapping[str, Any]]] = None,
     ) -> str:
         """Adds a stage: loads by node, `body_forces` by material, `tractions` and `pressures` by surface. Its pattern is multiplied by the load factor, which begins at 0; `until` says where it ends,
         such as `{"load_above": 1}` or `{"displacement": {"node": "tip", "component": "y", "below": -0.2}}`. With `control="load"`
-        the load goes one way, or through `history` as often as `cycles` says, and the structure jumps where it must."""
+        the load goes one way, or through `history` as often as `cycles` says, and the structure jumps where it must.
+        `obstacle_rotation` turns obstacles, such as `{"drum": {"angle": 0.5}}` (radians), with `about` and in space `axis`."""
         stage: Dict[str, Any] = {"name": name}
         for key, pattern in (("forces", forces), ("displacements", displacements)):
             if pattern is not None:
@@ -327,7 +329,8 @@ class Model:
         if moments is not None:
             stage["moments"] = {self.node_name(node): plain(moment) for node, moment in moments.items()}
         on_solids = (("body_forces", body_forces), ("tractions", tractions), ("pressures", pressures))
-        for key, pattern_of_names in (*on_solids, ("obstacle_motion", obstacle_motion)):
+        of_obstacles = (("obstacle_motion", obstacle_motion), ("obstacle_rotation", obstacle_rotation))
+        for key, pattern_of_names in (*on_solids, *of_obstacles):
             if pattern_of_names is not None:
                 stage[key] = plain(pattern_of_names)
         if until is not None:

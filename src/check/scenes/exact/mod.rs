@@ -72,7 +72,8 @@ type Recognise = fn(&Model) -> Option<Box<dyn ExactSolution>>;
 pub fn recognise(request: &JobRequest) -> Option<Exact> {
     let model = &request.model;
     let jumps = model.stages.iter().any(|stage| stage.control != StageControl::Path);
-    if request.analysis.selection != Selection::MaxDissipation || jumps {
+    let turns = model.stages.iter().any(|stage| !stage.obstacle_rotation.is_empty());
+    if request.analysis.selection != Selection::MaxDissipation || jumps || turns {
         return None;
     }
     let families: [Recognise; 8] = [

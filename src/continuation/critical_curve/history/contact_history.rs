@@ -67,9 +67,10 @@ pub enum HistoryRefusal {
         "nodes turn in space, where a path depends on the references of its rotations; sweep the parameter instead"
     )]
     TurningNodes,
-    /// Friction between bodies.
+    /// Friction between bodies, or on an obstacle that turns.
     #[error(
-        "{0} touches another body with friction, where the slip is summed up along the path; sweep the parameter instead"
+        "{0} touches another body, or an obstacle that turns, with friction, where the slip is summed up along the path; \
+         sweep the parameter instead"
     )]
     SlidingBodies(String),
     /// A count of increments.

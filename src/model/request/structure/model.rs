@@ -5,6 +5,7 @@ use crate::model::request::structure::element::Element;
 use crate::model::request::structure::material::Material;
 use crate::model::request::structure::mesh::MeshFile;
 use crate::model::request::structure::obstacle::{Contact, Obstacle};
+use crate::model::request::structure::rotation::ObstaclePivot;
 use crate::model::request::structure::stage::Stage;
 use crate::model::request::structure::surface::{NamedSet, Surface};
 use indexmap::IndexMap;
@@ -93,6 +94,19 @@ impl Model {
             }
         }
         rotating
+    }
+
+    /// The obstacles that turn, in the order of the obstacles, each with the pivot of the first stage that turns it.
+    pub(crate) fn turning_obstacles(&self) -> IndexMap<&str, ObstaclePivot> {
+        let mut turning: IndexMap<&str, ObstaclePivot> = IndexMap::new();
+        for (name, rotation) in self.stages.iter().flat_map(|stage| &stage.obstacle_rotation) {
+            let pivot = self.obstacles.get(name).and_then(|obstacle| rotation.pivot(obstacle, self.dimension));
+            if let Some(pivot) = pivot {
+                turning.entry(name).or_insert(pivot);
+            }
+        }
+        turning.sort_by_cached_key(|name, _| self.obstacles.get_index_of(*name));
+        turning
     }
 
     /// A model without nodes, in the plane (2) or in space (3).

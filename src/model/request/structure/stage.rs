@@ -1,6 +1,7 @@
 //! Stages of the load, and where they end.
 
 use crate::model::request::structure::component::Component;
+use crate::model::request::structure::rotation::ObstacleRotation;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
@@ -36,6 +37,9 @@ pub struct Stage {
     /// Obstacle name to translation (length); multiplied by the load factor.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub obstacle_motion: IndexMap<String, Vec<f64>>,
+    /// Obstacle name to rotation; its angle is multiplied by the load factor.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub obstacle_rotation: IndexMap<String, ObstacleRotation>,
     /// Where the stage ends; absent: it goes on to `max_increments`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<Until>,
@@ -94,6 +98,7 @@ impl Stage {
             tractions: IndexMap::new(),
             pressures: IndexMap::new(),
             obstacle_motion: IndexMap::new(),
+            obstacle_rotation: IndexMap::new(),
             until: None,
             control: StageControl::Path,
             history: Vec::new(),
@@ -147,6 +152,13 @@ impl Stage {
     #[must_use]
     pub fn obstacle_motion(mut self, obstacle: impl Into<String>, translation: impl Into<Vec<f64>>) -> Self {
         self.obstacle_motion.insert(obstacle.into(), translation.into());
+        self
+    }
+
+    /// With a rotation of an obstacle, in place of one given before.
+    #[must_use]
+    pub fn obstacle_rotation(mut self, obstacle: impl Into<String>, rotation: ObstacleRotation) -> Self {
+        self.obstacle_rotation.insert(obstacle.into(), rotation);
         self
     }
 

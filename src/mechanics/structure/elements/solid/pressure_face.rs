@@ -5,12 +5,13 @@
 //! the displacements, and columns of the load factor the present force, wherever they are formed.
 //!
 //! ```text
-//! f_a = q P ∫ N_a n da,      p = q P,   P = PRESSURE_UNIT
+//! f_a = q P ∫ N_a n da,      p = q P,   P = AUXILIARY_UNIT
 //! ```
 //!
 //! An internal force is the load with the opposite sign. The tangent is not symmetric: see
 //! [`loads`](crate::mechanics::structure::elements::solid::loads). The element stores no energy.
 
+use crate::mechanics::AUXILIARY_UNIT;
 use crate::mechanics::structure::element_list::ElementList;
 use crate::mechanics::structure::elements::FiniteElement;
 use crate::mechanics::structure::elements::solid::any::leading;
@@ -18,10 +19,6 @@ use crate::mechanics::structure::elements::solid::formulations::nodal_sums::Noda
 use crate::mechanics::structure::elements::solid::loads::{pressure_force, write_pressure_stiffness};
 use crate::mechanics::structure::elements::solid::shapes::faces::{FaceKind, FacePositions};
 use crate::mechanics::structure::elements::solid::shapes::kind::Idealisation;
-
-/// The dimensionless pressure of a degree of freedom of 1. So large that the degree of freedom, which is no length, does
-/// not count in the norm of the arc length beyond round-off; a power of two, so that no digit is lost.
-pub const PRESSURE_UNIT: f64 = 1_099_511_627_776.0;
 
 /// A face of `N` nodes under a pressure.
 #[derive(Debug, Clone)]
@@ -64,7 +61,7 @@ where
 
 /// The pressure among the displacements of an element.
 fn pressure_of<const N: usize, const D: usize>(displacement: &[f64]) -> f64 {
-    displacement[N * D] * PRESSURE_UNIT
+    displacement[N * D] * AUXILIARY_UNIT
 }
 
 impl<const N: usize, const D: usize> FiniteElement for PressureFace<N, D>
@@ -94,7 +91,7 @@ where
         stiffness.fill(0.0);
         let size = (N + 1) * D;
         self.each_slope(displacement, |row, column, slope| stiffness[row * size + column] = -slope);
-        let by_pressure = self.forces(displacement, PRESSURE_UNIT);
+        let by_pressure = self.forces(displacement, AUXILIARY_UNIT);
         by_pressure.iter().flatten().enumerate().for_each(|(row, force)| stiffness[row * size + N * D] = -force);
     }
 

@@ -110,6 +110,12 @@ function parts(reading, given, nodes) {
     stageOf(reading, stage, number, { missing, obstacles })) };
 }
 
+function rotationProblem(reading, rotation) {
+  if (!Number.isFinite(rotation?.angle)) return "its angle has to be a number";
+  const vectors = [rotation.about, reading.dimension === 3 ? rotation.axis : undefined].filter((given) => given !== undefined);
+  return vectors.map((given) => reading.vectorOr(given)).find(Boolean) ?? null;
+}
+
 function counterpartProblem({ obstacle, against }, obstacles, surfaces) {
   if (against !== undefined) return Object.hasOwn(surfaces ?? {}, against) ? null : `there is no surface “${against}”`;
   return Object.hasOwn(obstacles, obstacle) ? null : `there is no obstacle “${obstacle}”`;
@@ -166,5 +172,7 @@ function stageOf(reading, stage, number, { missing, obstacles }) {
       missing(name) ?? reading.motionOr(value)),
     obstacle_motion: reading.keep(stage?.obstacle_motion, of("The motion"), (value, name) =>
       (Object.hasOwn(obstacles, name) ? reading.vectorOr(value) : `there is no obstacle “${name}”`)),
+    obstacle_rotation: reading.keep(stage?.obstacle_rotation, of("The rotation"), (value, name) =>
+      (Object.hasOwn(obstacles, name) ? rotationProblem(reading, value) : `there is no obstacle “${name}”`)),
   };
 }

@@ -18,14 +18,14 @@ export function places(model, increment, exaggeration = 1) {
 }
 
 /** What acts at an increment of a member of the stages (`forces`, `moments`, `displacements`, `obstacle_motion`), by name: the patterns of
- *  earlier stages times what they came to, plus that of the current stage times its load factor. */
-export function acting(model, increment, reached, member) {
+ *  earlier stages times what they came to, plus that of the current stage times its load factor. `numbers`: those of a pattern. */
+export function acting(model, increment, reached, member, numbers = (given) => [given].flat()) {
   const sums = new Map();
   for (const stage of model.stages) {
     const isRunning = stage.name === increment.stage;
     const factor = isRunning ? increment.load_factor : reached.get(stage.name) ?? 0;
     for (const [name, given] of Object.entries(stage[member] ?? {})) {
-      const pattern = [given].flat();
+      const pattern = numbers(given);
       sums.set(name, plus(sums.get(name) ?? times(pattern, 0), pattern, factor));
     }
     if (isRunning) break;
@@ -59,6 +59,12 @@ function normalOfPolyline(obstacle, place) {
 
 /** The normal of an obstacle into the free side at a position, and the tangents to which the reactions refer. */
 export function frame(obstacle, place, moved = []) {
+  if (obstacle.turned) {
+    // The tangents of an obstacle that turns turn with it.
+    const { original, pivot, into, outOf } = obstacle.turned;
+    const own = frame(original, plus(pivot, into(plus(plus(place, moved, -1), pivot, -1))));
+    return { normal: outOf(own.normal), tangents: own.tangents.map(outOf) };
+  }
   let normal;
   if (obstacle.kind === "plane") normal = unit(obstacle.normal);
   else if (obstacle.kind === "polyline") normal = normalOfPolyline(obstacle, plus(place, moved, -1));

@@ -239,10 +239,10 @@ export class PathData {
       }
       return null;
     };
-    for (const { forces, displacements, obstacle_motion: motion } of stages) {
-      // A moving obstacle displaces the nodes on it.
-      const taken = (model.contacts ?? []).filter(({ obstacle }) => motion?.[obstacle])
-        .map(({ node, obstacle }) => [node, motion[obstacle]]);
+    for (const { forces, displacements, obstacle_motion: motion, obstacle_rotation: rotation } of stages) {
+      // A moving obstacle displaces the nodes on it, and so does one that turns.
+      const taken = (model.contacts ?? []).filter(({ obstacle }) => motion?.[obstacle] ?? rotation?.[obstacle])
+        .map(({ node, obstacle }) => [node, motion?.[obstacle] ?? model.nodes[node].map((_, axis) => (axis === 0 ? 1 : 0))]);
       const found = loaded({ ...forces, ...displacements }) ?? loaded(Object.fromEntries(taken));
       if (found) return found;
     }

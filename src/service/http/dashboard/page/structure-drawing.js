@@ -12,6 +12,7 @@ import { StressColours } from "./structure-solids.js";
 import { drawLoads, largestOf, loadsOf } from "./structure-loads.js";
 import { NodeDrawing } from "./structure-nodes.js";
 import { ObstacleDrawing } from "./structure-obstacles.js";
+import { withTurned } from "./turning-obstacles.js";
 import { StructureTraces } from "./structure-traces.js";
 import { unitsOf } from "./units.js";
 
@@ -27,14 +28,19 @@ export const nothingDrawn = () => ({ reaction: LEAST, load: LEAST, axial: 0, dia
  * for the usual; `hides`: a set of `loads`, `reactions`, `obstacles`; `hasOwnScale`: colours span the forces of this increment; `diagram`: of the forces in members, null for none; `extent` and `largest`: of what has been drawn so far, widened by this; `reached`: load factor that each stage
  * came to. Answers `{traces, leftOut, heights}`: sentences on what is not in the picture, and what the height of a diagram means.
  */
-export function structureDrawing(model, increment, view) {
+export function structureDrawing(posted, increment, view) {
   const { extent, largest, exaggeration } = view;
-  const now = places(model, increment, exaggeration);
+  const now = places(posted, increment, exaggeration);
   extent.widen(now.values());
+  const loads = loadsOf(posted, increment, view.reached);
+  // Where nodes are drawn further on, so are the obstacles that push them.
+  const isAtRest = increment.index === null;
+  const moved = new Map(isAtRest ? [] : [...loads.motions].map(([name, motion]) => [name, times(motion, exaggeration)]));
+  const turns = new Map(isAtRest ? [] : [...loads.turns].map(([name, angle]) => [name, angle * exaggeration]));
+  const model = withTurned(posted, turns);
   const detail = new Detail(model);
   const traces = new StructureTraces(projection(model.dimension, view.turn), detail.isLarge);
   const units = unitsOf(model);
-  const loads = loadsOf(model, increment, view.reached);
   const forces = elementForces(model, increment);
   keepLargest(largest, increment, loads, forces, model);
   const kind = model.dimension === 2 ? view.diagram : null;
@@ -46,15 +52,12 @@ export function structureDrawing(model, increment, view) {
     if (model.dimension === 2) return exaggeration * (turns[2] ?? 0);
     return [3, 4, 5].map((place) => exaggeration * (turns[place] ?? 0));
   };
-  // Where nodes are drawn further on, so are the obstacles that push them.
-  const isAtRest = increment.index === null;
-  const moved = new Map(isAtRest ? [] : [...loads.motions].map(([name, motion]) => [name, times(motion, exaggeration)]));
   const hides = view.hides ?? new Set();
   const here = () => forces.of.reduce((most, { axial }) => Math.max(most, Math.abs(axial ?? 0)), 0);
   const colours = new ForceColours(model, view.hasOwnScale ? here() : largest.axial);
   const stressColours = new StressColours(largest.stress ?? 0);
   const common = { now, moved, units, detail };
-  if (!hides.has("obstacles")) new ObstacleDrawing(model, extent, traces, { ...common, moves: loads.motions });
+  if (!hides.has("obstacles")) new ObstacleDrawing(model, extent, traces, { ...common, moves: loads.motions, turns: loads.turns });
   new ElementDrawing(model, traces, { ...common, forces, colours, stressColours, rotation, diagrams, size: extent.size });
   diagrams?.label();
   if (!hides.has("loads")) drawLoads(loads, extent, traces, { ...common, most: largest.load });

@@ -2,6 +2,7 @@
 
 import { acting, vector } from "./geometry.js";
 import { fromSheet } from "./plot-style.js";
+import { angles } from "./turning-obstacles.js";
 import { components, moment } from "./units.js";
 
 const { plus, length, unit } = vector;
@@ -14,8 +15,8 @@ const POINTS = 16;
 const THROUGH = 1.5 * Math.PI;
 
 /**
- * What acts on the nodes at an increment: `{forces, moments, displacements, motions}`, each a map of names to vectors. Before the first
- * increment: what the stages bring at load factor 1, all of them together.
+ * What acts at an increment: `{forces, moments, displacements, motions}`, each a map of names to vectors, and `turns`, names of obstacles to
+ * angles. Before the first increment: what the stages bring at load factor 1, all of them together.
  */
 export function loadsOf(model, increment, reached) {
   const isAtRest = increment.index === null;
@@ -24,6 +25,7 @@ export function loadsOf(model, increment, reached) {
   const of = (member) => acting(model, seen, isAtRest ? all : reached, member);
   return {
     forces: of("forces"), moments: of("moments"), displacements: of("displacements"), motions: of("obstacle_motion"),
+    turns: angles(model, seen, isAtRest ? all : reached),
   };
 }
 

@@ -4,6 +4,7 @@
 import { frame, fromMiddle, sectionAxes, vector } from "./geometry.js";
 import { planeCurve } from "./plane-curve.js";
 import { fromSheet } from "./plot-style.js";
+import { drawTurn } from "./structure-loads.js";
 import { components } from "./units.js";
 
 const { plus, unit, dot, length } = vector;
@@ -29,9 +30,9 @@ const NEAR = 0.75;
 const MOTION = 0.15;
 
 export class ObstacleDrawing {
-  /** `now`: where the nodes are; `moved`: the displacements of the obstacles; `moves`: those whose arrows are drawn. */
-  constructor(model, extent, traces, { now, moved, moves, units, detail }) {
-    Object.assign(this, { model, extent, traces, now, moved, moves, units, detail });
+  /** `now`: where the nodes are; `moved`: the displacements of the obstacles; `moves`, `turns`: those whose arrows are drawn. */
+  constructor(model, extent, traces, { now, moved, moves, turns, units, detail }) {
+    Object.assign(this, { model, extent, traces, now, moved, moves, turns, units, detail });
     this.line = { color: fromSheet("--obstacle"), width: 2 };
     for (const [name, obstacle] of Object.entries(model.obstacles ?? {})) this.draw(name, obstacle);
   }
@@ -45,6 +46,13 @@ export class ObstacleDrawing {
       traces.reach.length = before;
       this.detail.leave(`The obstacle “${name}” is too far from the structure to be in the picture`);
       return;
+    }
+    const angle = this.turns.get(name) ?? 0;
+    if (angle !== 0) {
+      drawTurn(traces, extent, {
+        trace: "rotation of an obstacle", place: obstacle.turned ? plus(obstacle.turned.pivot, this.moved.get(name) ?? []) : middle, value: angle,
+        color: fromSheet("--obstacle"), words: `${name} turns by ${angle} rad`,
+      });
     }
     const motion = this.moves.get(name);
     if (!motion?.some((value) => value !== 0)) return;
@@ -145,6 +153,11 @@ export class ObstacleDrawing {
       const round = circle(center, obstacle.radius, pair.map((axis) => axes[axis]));
       traces.lines("obstacle", [round], this.line, name);
       if (dimension === 2 && obstacle.side !== "inside") traces.area(round, fromSheet("--ground"));
+    }
+    // A spoke shows how far a ball has turned.
+    if (this.turns.has(name) && dimension === 2) {
+      const along = [obstacle.radius, 0];
+      traces.lines("obstacle", [[center, plus(center, obstacle.turned?.outOf(along) ?? along)]], this.line, name);
     }
     return center;
   }

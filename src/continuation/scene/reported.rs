@@ -1,9 +1,23 @@
-//! The elements and supports whose forces an increment has.
+//! What increments report: the contacts of the request, and the elements and supports with their forces.
 
 use crate::model::JobRequest;
 use crate::model::request::recorded_forces::recorded_elements;
 use crate::result::nodal_values::NodalValues;
 use std::sync::Arc;
+
+/// A contact of the request and its share of the contact that is solved for.
+#[derive(Debug, Clone)]
+pub(crate) struct Reported {
+    pub node: Arc<str>,
+    pub obstacle: Arc<str>,
+    /// Index of the scene's contact.
+    pub contact: usize,
+    /// Shares of the normal and tangential reaction; 1 unless contacts coincide.
+    pub normal_share: f64,
+    pub tangential_share: f64,
+    /// Whether other contacts of the request share the scene's contact.
+    pub shared: bool,
+}
 
 /// What of the forces an increment has. The reactions of all supports are computed, since the measure needs them for the
 /// balance of the whole structure; those that the request does not ask for are left out after the increment is measured.
