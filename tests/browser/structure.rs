@@ -149,6 +149,32 @@ async fn loads_point_at_their_nodes_and_supports_show_what_they_hold() {
 }
 
 #[tokio::test]
+async fn obstacles_that_turn_are_drawn_where_they_are() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let request = json!({"model": {
+        "dimension": 2,
+        "nodes": {"block": [0, 0]},
+        "elements": [{"kind": "spring", "nodes": ["block"], "stiffness": [[0.5, 0], [0, 0.5]]}],
+        "obstacles": {"slope": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}},
+        "contacts": [{"node": "block", "obstacle": "slope", "friction": 0.5}],
+        "stages": [
+            {"name": "weigh", "forces": {"block": [0, -1]}, "until": {"load_above": 1}},
+            {"name": "tilt", "obstacle_rotation": {"slope": {"angle": 1}}, "until": {"load_above": 0.6}},
+        ],
+    }});
+    let id = served.ended(&request).await;
+    browser.visit(&format!("{}/?jobs={id}", served.url())).await;
+    browser.until(&format!("{} !== undefined", trace("rotation of an obstacle"))).await;
+    let edge = format!("(({{x, y}}) => [x[0], y[0], x.at(-2), y.at(-2)])({})", trace("obstacle"));
+    let found = browser.ask(&edge).await;
+    let at = |place: usize| found[place].as_f64().expect("a number");
+    let slope = (at(3) - at(1)) / (at(2) - at(0));
+    assert!((slope - 0.6_f64.tan()).abs() < 1e-9, "{found}");
+    browser.close(served.url(), &[]).await;
+}
+
+#[tokio::test]
 async fn bars_are_coloured_by_the_recorded_force_with_a_scale_in_the_models_units() {
     let Some(browser) = Browser::open().await else { return };
     let served = Served::start();

@@ -1,6 +1,6 @@
 // Loads in the picture of a structure: forces, which point at their nodes, and displacements that supports impose.
 
-import { acting, vector } from "./geometry.js";
+import { acting, frame, vector } from "./geometry.js";
 import { fromSheet } from "./plot-style.js";
 import { angles } from "./turning-obstacles.js";
 import { components, moment } from "./units.js";
@@ -62,12 +62,13 @@ export function drawLoads(loads, extent, traces, { now, most, units, detail }) {
   }
 }
 
-/** An arc about a node, with its arrow in the direction of the value. */
-export function drawTurn(traces, extent, { trace, place, value, color, words }) {
+/** An arc about a place, in space about an axis through it, with its arrow in the direction of the value. */
+export function drawTurn(traces, extent, { trace, place, axis, value, color, words }) {
   const radius = MOMENT * extent.size;
+  const [first, second] = axis ? frame({ kind: "plane", normal: axis }, place).tangents : [[1, 0], [0, 1]];
   const points = Array.from({ length: POINTS + 1 }, (_, step) => {
     const angle = -Math.PI / 4 + Math.sign(value) * (step / POINTS) * THROUGH;
-    return [place[0] + radius * Math.cos(angle), place[1] + radius * Math.sin(angle)];
+    return plus(plus(place, first, radius * Math.cos(angle)), second, radius * Math.sin(angle));
   });
   traces.lines(trace, [points.slice(0, -1)], { color, width: 2 });
   traces.arrow(`${trace} arrow`, points.at(-2), points.at(-1), color, { words });

@@ -50,8 +50,8 @@ export class ObstacleDrawing {
     const angle = this.turns.get(name) ?? 0;
     if (angle !== 0) {
       drawTurn(traces, extent, {
-        trace: "rotation of an obstacle", place: obstacle.turned ? plus(obstacle.turned.pivot, this.moved.get(name) ?? []) : middle, value: angle,
-        color: fromSheet("--obstacle"), words: `${name} turns by ${angle} rad`,
+        trace: "rotation of an obstacle", place: obstacle.turned ? plus(obstacle.turned.pivot, this.moved.get(name) ?? []) : middle,
+        axis: obstacle.turned?.axis ?? (this.model.dimension === 3 ? [0, 0, 1] : undefined), value: angle, color: fromSheet("--obstacle"), words: `${name} turns by ${angle} rad`,
       });
     }
     const motion = this.moves.get(name);

@@ -26,7 +26,7 @@ function turned(v, axis, angle) {
   return plus(plus(times(v, cosine), cross(axis, v), sine), axis, (1 - cosine) * dot(axis, v));
 }
 
-/** The model with its obstacles turned by these angles. A turned obstacle has `turned`: `{original, pivot, angle, into, outOf}` with
+/** The model with its obstacles turned by these angles. A turned obstacle has `turned`: `{original, pivot, axis, into, outOf}` with
  *  functions of vectors into its own axes and out of them. */
 export function withTurned(model, turns) {
   const some = [...turns].filter(([name, angle]) => angle !== 0 && model.obstacles?.[name]);
@@ -43,7 +43,7 @@ function turnedObstacle(obstacle, { place: pivot, axis }, angle) {
   const outOf = (v) => turned(v, axis, angle);
   const into = (v) => turned(v, axis, -angle);
   const place = (point) => plus(pivot, outOf(plus(point, pivot, -1)));
-  const own = { ...obstacle, turned: { original: obstacle, pivot, angle, into, outOf } };
+  const own = { ...obstacle, turned: { original: obstacle, pivot, axis: axis ?? undefined, into, outOf } };
   for (const member of ["point", "center"]) if (obstacle[member]) own[member] = place(obstacle[member]);
   for (const member of ["normal", "axis"]) if (obstacle[member]) own[member] = outOf(obstacle[member]);
   if (obstacle.section) {
