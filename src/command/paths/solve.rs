@@ -6,9 +6,9 @@ use crate::command::output::path_file::{Format, PathFile};
 use crate::command::output::path_picture::PathPicture;
 use crate::command::output::picture_file::PictureFile;
 use crate::command::output::written::{folders_exist, is_standard_output, one_on_standard_output};
-use crate::resources::cancel::CancelFlag;
+use crate::continuation::scene::Scene;
 use crate::result::stop_reason;
-use crate::service::jobs::{PathSolver, Solver};
+use crate::service::jobs::solve_scene;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
@@ -44,8 +44,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let format = Format::of(arguments.format, &arguments.out)?;
     let request = arguments.model.read()?;
     // Checked before the file is opened, so that a mistake does not overwrite an earlier result.
-    let plan = PathSolver.plan(&request).map_err(input::refused)?;
-    tell(&plan.warnings);
+    let scene = Scene::new(&request).map_err(input::refused)?;
+    tell(&scene.plan().warnings);
     if request.analysis.explore.is_some() {
         eprintln!("explore: the directions not taken are followed by `arcslip serve` only; this traces one path");
     }
@@ -53,24 +53,22 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mut writer = PathFile::open(&arguments.out, format, &request)?;
     let progress = progress_bar(request.analysis.max_increments, !is_standard_output(&arguments.out));
     let mut unwritten = None;
-    let report = PathSolver
-        .solve(&request, None, CancelFlag::default(), &mut |step, _| {
-            progress.set_position(step.index + 1);
-            let Some(judged) = step.given else { return ControlFlow::Continue(()) };
-            match writer.write(&judged) {
-                Ok(()) => {
-                    if let Some(picture) = &mut picture {
-                        picture.push(judged.increment);
-                    }
-                    ControlFlow::Continue(())
+    let report = solve_scene(&request, &scene, &mut |step, _| {
+        progress.set_position(step.index + 1);
+        let Some(judged) = step.given else { return ControlFlow::Continue(()) };
+        match writer.write(&judged) {
+            Ok(()) => {
+                if let Some(picture) = &mut picture {
+                    picture.push(judged.increment);
                 }
-                Err(error) => {
-                    unwritten = Some(error);
-                    ControlFlow::Break(())
-                }
+                ControlFlow::Continue(())
             }
-        })
-        .map_err(input::refused)?;
+            Err(error) => {
+                unwritten = Some(error);
+                ControlFlow::Break(())
+            }
+        }
+    });
     progress.finish_and_clear();
     let unwritten = unwritten.or_else(|| writer.finish().err());
     if let Some(error) = unwritten {

@@ -17,5 +17,5 @@ pub use queue::checks::Posted;
 pub use queue::error::JobsError;
 pub use queue::fair_semaphore::Client;
 pub use queue::jobs::Jobs;
-pub use solving::solver::{PathSolver, Solver};
+pub use solving::solver::{PathSolver, Solver, solve_scene};
 pub use workers::worker_pool::WorkerPool;

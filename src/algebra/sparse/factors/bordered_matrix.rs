@@ -5,6 +5,7 @@ use crate::algebra::dense::matrix_sink::Sink;
 use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;
 use crate::algebra::sparse::factors::pattern::Pattern;
+use crate::algebra::sparse::spare_memory::Reused;
 use nalgebra::DVector;
 use smallvec::smallvec;
 use std::sync::Arc;
@@ -14,7 +15,7 @@ use std::sync::Arc;
 pub struct Bordered {
     pub(crate) pattern: Arc<Pattern>,
     /// Entries of `K`, both triangles.
-    pub(crate) values: Vec<f64>,
+    pub(crate) values: Reused,
     /// Columns of `B`.
     pub(crate) right: Vec<SparseEntries>,
     /// Rows of `[C, D]`.
@@ -82,7 +83,7 @@ impl Bordered {
     /// The zero matrix with `borders` border rows and columns.
     pub fn new(pattern: Arc<Pattern>, borders: usize) -> Self {
         Self {
-            values: vec![0.0; pattern.entries()],
+            values: pattern.matrix_values(),
             pattern,
             right: vec![SparseEntries::new(); borders],
             lower: vec![SparseEntries::new(); borders],
@@ -148,7 +149,7 @@ impl Bordered {
     #[must_use]
     pub fn minus(&self, other: &Self, factor: f64) -> Self {
         let mut change = self.clone();
-        change.values.iter_mut().zip(&other.values).for_each(|(value, other)| *value = (*value - other) * factor);
+        change.values.iter_mut().zip(other.values.iter()).for_each(|(value, other)| *value = (*value - other) * factor);
         let lists = |own: &mut [SparseEntries], others: &[SparseEntries]| {
             for (own, other) in own.iter_mut().zip(others) {
                 own.extend(other.iter().map(|(place, value)| (*place, -value)));

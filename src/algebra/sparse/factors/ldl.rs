@@ -10,6 +10,7 @@ use crate::algebra::sparse::factors::pattern::Pattern;
 use crate::algebra::sparse::factors::substitutions::{self, Substitutions};
 use crate::algebra::sparse::factors::supernodal_ldl;
 use crate::algebra::sparse::factors::tolerances::{PIVOT_SUBSTITUTE, SMALLEST_PIVOT};
+use crate::algebra::sparse::spare_memory::Reused;
 use crate::resources::budget::{self, Taken};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::{LdltError, LdltRegularization};
@@ -31,7 +32,7 @@ pub enum LdlFailure {
 /// A factorisation of `K` with some diagonal entries raised.
 pub struct SymmetricFactor {
     pattern: Arc<Pattern>,
-    values: Vec<f64>,
+    values: Reused,
     /// Scale factors of rows and columns: powers of two.
     scales: Vec<f64>,
     /// Unknowns with raised diagonal entries, and the increments `θ` in the units of the matrix.
@@ -50,15 +51,14 @@ impl SymmetricFactor {
             return Err(LdlFailure::NotFinite);
         }
         let scales = scales(&pattern, values);
-        let mut scaled = vec![0.0; values.len()];
+        let mut scaled = pattern.any_matrix_values();
         for column in 0..size {
             for place in pattern.column(column) {
                 scaled[place] = values[place] * scales[pattern.rows[place]] * scales[column];
             }
         }
-        let held = budget::take::<f64>(pattern.factor_entries() + values.len() + size);
-        let mut factor =
-            Self { values: vec![0.0; pattern.factor_entries()], pattern, scales, raised: Vec::new(), _held: held };
+        let held = budget::take::<f64>(size);
+        let mut factor = Self { values: pattern.any_factor_values(), pattern, scales, raised: Vec::new(), _held: held };
         factor.raise(factor.last(), &mut scaled);
         loop {
             factor.factorise(&scaled)?;
@@ -113,6 +113,7 @@ impl SymmetricFactor {
             return Ok(());
         }
         budget::spend(usize::try_from(symbolic.fill.multiplications).unwrap_or(usize::MAX));
+        self.values.fill(0.0);
         let symbolic = &symbolic.cholesky;
         let request = symbolic.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default());
         let mut memory = MemBuffer::try_new(request).map_err(|_| LdlFailure::OutOfMemory)?;

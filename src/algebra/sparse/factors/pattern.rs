@@ -4,6 +4,7 @@ use crate::algebra::sparse::constrained_nodes::node_cache::LastNodes;
 use crate::algebra::sparse::factors::elimination_order::Symbolic;
 use crate::algebra::sparse::factors::lu_pattern::LuPattern;
 use crate::algebra::sparse::factors::tolerances::BLOCKED_LDL_WORK;
+use crate::algebra::sparse::spare_memory::{Reused, SpareMemory};
 use crate::resources::budget::{self, Taken};
 use faer::sparse::SymbolicSparseColMatRef;
 use std::sync::OnceLock;
@@ -21,6 +22,8 @@ pub struct Pattern {
     /// Computed when first needed.
     fill: OnceLock<LuPattern>,
     pub(crate) last_nodes: LastNodes,
+    /// Of the entries of matrices, and of those of factors.
+    spare: [SpareMemory; 2],
     _held: Taken,
 }
 
@@ -59,7 +62,8 @@ impl Pattern {
         let symbolic = Symbolic::new((&starts, &rows), (&starts, &rows), BLOCKED_LDL_WORK)?;
         let held = budget::take::<usize>(size + 2 * rows.len() + symbolic.indices());
         let (fill, last_nodes) = (OnceLock::new(), LastNodes::default());
-        Some(Self { size, starts, rows, mirrors, symbolic, fill, last_nodes, _held: held })
+        let spare = [3, 1].map(SpareMemory::new);
+        Some(Self { size, starts, rows, mirrors, symbolic, fill, last_nodes, spare, _held: held })
     }
 
     /// Number of rows of the matrix.
@@ -70,6 +74,21 @@ impl Pattern {
     /// Number of entries, both triangles.
     pub fn entries(&self) -> usize {
         self.rows.len()
+    }
+
+    /// Zeros for all entries.
+    pub(crate) fn matrix_values(&self) -> Reused {
+        self.spare[0].zeros(self.entries())
+    }
+
+    /// Any numbers for all entries.
+    pub(crate) fn any_matrix_values(&self) -> Reused {
+        self.spare[0].any(self.entries())
+    }
+
+    /// Any numbers for the entries of the factor.
+    pub(crate) fn any_factor_values(&self) -> Reused {
+        self.spare[1].any(self.factor_entries())
     }
 
     /// Number of entries of the factor.

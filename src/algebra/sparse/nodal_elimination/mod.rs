@@ -29,6 +29,7 @@ pub use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Holding, 
 use crate::algebra::sparse::constrained_nodes::node_cache::Nodes;
 use crate::algebra::sparse::factors::bordered_matrix::Bordered;
 use crate::algebra::sparse::factors::entries::SparseEntries;
+use crate::algebra::sparse::spare_memory::Reused;
 use smallvec::SmallVec;
 use std::sync::Arc;
 
@@ -45,7 +46,7 @@ pub(super) struct Elimination {
 impl Elimination {
     /// Eliminates the constrained nodes; returns the values of the remaining matrix, too. A holding that cannot be
     /// eliminated in this way remains in the borders.
-    pub fn new(matrix: &Bordered, holdings: &Holdings, friction: Friction) -> (Self, Vec<f64>) {
+    pub fn new(matrix: &Bordered, holdings: &Holdings, friction: Friction) -> (Self, Reused) {
         let all = Nodes::of(matrix, holdings, friction);
         let (nodes, numbers) = (&all.nodes, &all.numbers);
         let mut values = matrix.values.clone();

@@ -147,6 +147,11 @@ impl Solver for PathSolver {
     }
 }
 
+/// Traces the path of a scene that has been built for this request; otherwise as [`Solver::solve`].
+pub fn solve_scene(request: &JobRequest, scene: &Scene, accept: Accept<'_>) -> Option<JudgedReport> {
+    trace(JudgedPath::new(request, scene, CancelFlag::default()), accept)
+}
+
 fn trace(mut path: JudgedPath<'_>, accept: Accept<'_>) -> Option<JudgedReport> {
     let mut off_measure = false;
     while let Some(step) = path.step() {
