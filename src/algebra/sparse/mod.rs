@@ -20,7 +20,6 @@ pub mod factors;
 pub(crate) mod fallback_lu;
 pub(crate) mod nodal_elimination;
 pub(crate) mod preconditioned_refinement;
-pub(crate) mod spare_memory;
 #[cfg(test)]
 mod tests;
 pub(crate) mod tolerances;

@@ -5,7 +5,7 @@ use crate::algebra::dense::matrix_sink::Sink;
 use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;
 use crate::algebra::sparse::factors::pattern::Pattern;
-use crate::algebra::sparse::spare_memory::Reused;
+use crate::resources::spare_memory::Reused;
 use nalgebra::DVector;
 use smallvec::smallvec;
 use std::sync::Arc;

@@ -4,8 +4,8 @@ use crate::algebra::sparse::constrained_nodes::node_cache::LastNodes;
 use crate::algebra::sparse::factors::elimination_order::Symbolic;
 use crate::algebra::sparse::factors::lu_pattern::LuPattern;
 use crate::algebra::sparse::factors::tolerances::BLOCKED_LDL_WORK;
-use crate::algebra::sparse::spare_memory::{Reused, SpareMemory};
 use crate::resources::budget::{self, Taken};
+use crate::resources::spare_memory::{Reused, SpareMemory};
 use faer::sparse::SymbolicSparseColMatRef;
 use std::sync::OnceLock;
 

@@ -29,7 +29,7 @@ pub use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Holding, 
 use crate::algebra::sparse::constrained_nodes::node_cache::Nodes;
 use crate::algebra::sparse::factors::bordered_matrix::Bordered;
 use crate::algebra::sparse::factors::entries::SparseEntries;
-use crate::algebra::sparse::spare_memory::Reused;
+use crate::resources::spare_memory::Reused;
 use smallvec::SmallVec;
 use std::sync::Arc;
 

@@ -8,11 +8,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Vectors of fewer numbers are taken afresh: 256 KiB.
 const SMALLEST: usize = 1 << 15;
 
+/// A vector, and what it takes of the budget of the solve that gave it back.
+type Spare = (Vec<f64>, Taken);
+
 /// Vectors of one length that were given back.
 #[derive(Clone)]
 pub struct SpareMemory {
-    /// Each with what it takes of the budget of the solve that gave it back.
-    vectors: Arc<Mutex<Vec<(Vec<f64>, Taken)>>>,
+    vectors: Arc<Mutex<Vec<Spare>>>,
     /// The most vectors that are kept.
     most: usize,
 }
@@ -115,12 +117,12 @@ mod tests {
             drop(first);
             let again = memory.any(SMALLEST);
             assert_eq!((again.as_ptr(), again[7]), (place, 3.0));
-            assert_eq!(again.clone().as_ptr() == place, false);
+            assert_ne!(again.clone().as_ptr(), place);
             drop(again);
             assert_eq!(memory.zeros(SMALLEST)[7], 0.0);
         });
         assert_eq!(done, Ok(()));
-        // One is kept, and two more are too many.
+        // One is kept, and two of another length are too many.
         let done = budget.during(|| (memory.any(SMALLEST + 1), memory.any(SMALLEST + 1)).0.len());
         assert!(matches!(done, Err(Breach::Memory { .. })), "{done:?}");
     }
