@@ -96,8 +96,8 @@ impl StopReason {
             Self::Degenerate => "the possible directions form a set of more than one dimension: none can be named",
             Self::CornerNotAvailable => {
                 "a node is closed against several obstacles at once, with friction or with more reactions than its \
-                 equilibrium tells apart, while it is driven against them or they move against each other, or where three \
-                 meet in one edge, which is not available"
+                 equilibrium tells apart, while it is driven against them, they move against each other or one of them turns, or \
+                 where three meet in one edge, which is not available"
             }
             Self::ContactViolated => {
                 "no step of at least arc_length.min leads to a point that keeps to the laws of contact and friction; where a \

@@ -205,3 +205,43 @@ fn a_slip_in_a_pipe_under_a_skew_push_converges_to_that_of_another_integration()
         }
     }
 }
+
+/// A node on a stiff bar and a soft spring swings onto a cylinder. It slips on landing, and sticks with much
+/// friction; between 0.22 and 0.29 friction and the inclined bar leave no quasi-static way on. Near the lower bound the
+/// motion that belongs to a direction of slip turns by a right angle within a small part of a circle.
+#[test]
+fn a_node_that_lands_near_critical_friction_finds_its_slip() {
+    for friction in [0.19, 0.199, 0.2, 0.21, 0.3, 0.8] {
+        let request = typed(json!({"model": {
+            "dimension": 3,
+            "nodes": {"n0": [0.1, -0.33, 0], "n1": [0.82, -0.087, 0], "n2": [1.96, -0.389, 0.11], "n3": [2.98, 0.26, 0],
+                "top": [1.5, 0, 2]},
+            "supports": {"top": ["x", "y", "z"]},
+            "elements": [
+                {"kind": "bar", "nodes": ["n0", "top"], "axial_stiffness": 100},
+                {"kind": "bar", "nodes": ["n1", "top"], "axial_stiffness": 100},
+                {"kind": "bar", "nodes": ["n2", "top"], "axial_stiffness": 100},
+                {"kind": "bar", "nodes": ["n3", "top"], "axial_stiffness": 100},
+                {"kind": "bar", "nodes": ["n0", "n1"], "axial_stiffness": 10},
+                {"kind": "bar", "nodes": ["n1", "n2"], "axial_stiffness": 1},
+                {"kind": "bar", "nodes": ["n2", "n3"], "axial_stiffness": 10},
+                {"kind": "spring", "nodes": ["n0"], "stiffness": [[0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]]},
+                {"kind": "spring", "nodes": ["n1"], "stiffness": [[0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]]},
+                {"kind": "spring", "nodes": ["n2"], "stiffness": [[3, 0, 0], [0, 3, 0], [0, 0, 3]]},
+                {"kind": "spring", "nodes": ["n3"], "stiffness": [[0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]]}],
+            "obstacles": {
+                "drum": {"kind": "cylinder", "point": [1.5, 0, -2], "axis": [0.23567258424211496, 1, 0], "radius": 2}},
+            "contacts": [{"node": "n0", "obstacle": "drum", "friction": friction}],
+            "stages": [{"name": "load", "until": {"load_above": 1}, "forces": {
+                "n0": [0, 0, -0.5], "n1": [0, 0, -0.5], "n2": [0, 0, -0.5], "n3": [0, 0, -0.2]}}],
+        }}));
+        let traced = judged(&request);
+        assert_eq!(traced.report.stop_reason, StopReason::StagesCompleted, "friction {friction}");
+        let off = traced.errors.iter().filter(|errors| errors.largest_of_state() > 1e-10).count();
+        assert_eq!(off, 0, "friction {friction}");
+        let landing = traced.increments.iter().position(|increment| increment.point.kind == PointKind::ContactChange);
+        let after = &traced.increments[landing.expect("a landing") + 1];
+        let expected = if friction < 0.5 { Status::Slip } else { Status::Stick };
+        assert_eq!(after.contacts[0].status, expected, "friction {friction}");
+    }
+}

@@ -250,6 +250,34 @@ fn a_drum_that_turns_pulls_its_belt() {
     }
 }
 
+/// Two obstacles in one place that turn alike share their reaction; as one obstacle they give the same path.
+#[test]
+fn coincident_obstacles_that_turn_alike_are_one() {
+    for friction in [0.0, 0.5] {
+        let mut request = tilting_plane(2, None, 0.0);
+        request.model.contacts[0].friction = friction;
+        request.model.stages[1].obstacle_rotation["slope"].about = Some(vec![0.0, -1.0]);
+        let single = judged(&request);
+        let mut twins = request.clone();
+        let slope = twins.model.obstacles["slope"].clone();
+        twins.model.obstacles.insert("twin".to_owned(), slope);
+        let contact =
+            arcslip::model::request::Contact { obstacle: "twin".to_owned(), ..twins.model.contacts[0].clone() };
+        twins.model.contacts.push(contact);
+        let rotation = twins.model.stages[1].obstacle_rotation["slope"].clone();
+        twins.model.stages[1].obstacle_rotation.insert("twin".to_owned(), rotation);
+        let twins = judged(&twins);
+        assert_on_measure(&twins, "twins");
+        assert_eq!(twins.report.stop_reason, StopReason::StagesCompleted);
+        assert_eq!(single.increments.len(), twins.increments.len());
+        for (one, both) in single.increments.iter().zip(&twins.increments) {
+            assert_eq!(one.displacements, both.displacements);
+            let sum = both.contacts.iter().map(|contact| contact.normal_reaction).sum::<f64>();
+            close(sum, one.contacts[0].normal_reaction, 1e-12, "reactions");
+        }
+    }
+}
+
 /// Tips on springs and bars before an obstacle of any kind, pressed onto it, which then turns about any point or axis and
 /// may move, and pushed.
 fn random_request(seed: u64) -> JobRequest {

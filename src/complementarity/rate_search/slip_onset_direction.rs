@@ -25,6 +25,9 @@ use std::f64::consts::TAU;
 /// Number of angles at which the circle is scanned.
 pub(crate) const SECTORS: usize = 64;
 
+/// How often a sector is halved in which a ray turns too fast for its neighbour to be told.
+const HALVINGS: usize = 10;
+
 /// A ray along which entities begin to slip.
 pub(crate) struct Turning {
     pub ray: Ray,
@@ -51,40 +54,24 @@ pub(crate) struct Onsets {
 
 /// The onsets of slip of a touching entity; the searches at all angles together have the effort of one search.
 pub(crate) fn slips(problem: &RateProblem, touch: &Touch, effort: Effort<'_>) -> Onsets {
-    let mut found: Vec<Turning> = Vec::new();
-    let mut before: Vec<(Ray, f64)> = Vec::new();
-    let mut search = CircleSearch { problem, touch, effort, complete: true };
+    let mut search = CircleSearch { problem, touch, effort, complete: true, found: Vec::new() };
+    let mut before: Option<AtAngle> = None;
     for sector in 0..=SECTORS {
         let angle = TAU * sector as f64 / SECTORS as f64;
-        let here = search.rays(angle);
-        for (ray, misfit) in &here {
-            if misfit.abs() <= MISFIT_TOLERANCE {
-                touch.keep(&mut found, problem, ray.clone(), angle);
-                continue;
-            }
-            let partner = before.iter().find(|(other, other_misfit)| {
-                other.chosen() == ray.chosen()
-                    && misfit * other_misfit < 0.0
-                    && other_misfit.abs() > MISFIT_TOLERANCE
-                    && cosine(problem, other, ray) > SMALLEST_RAY_COSINE
-            });
-            let Some((other, other_misfit)) = partner else { continue };
-            let first = TAU * (sector as f64 - 1.0) / SECTORS as f64;
-            let mut last_ray = other.clone();
-            let evaluate = |angle: f64| {
-                let near = search.rays(angle).into_iter().filter(|(one, _)| one.chosen() == ray.chosen());
-                let (one, value) =
-                    near.max_by(|a, b| cosine(problem, &a.0, ray).total_cmp(&cosine(problem, &b.0, ray)))?;
-                last_ray = one;
-                Some(value)
-            };
-            if let Some(root) = find_root(evaluate, (first, *other_misfit), (angle, *misfit), 1e-15) {
-                touch.keep(&mut found, problem, last_ray, root);
-            }
+        let here = AtAngle { angle, rays: search.rays(angle) };
+        if let Some(before) = &before {
+            search.between(before, &here, HALVINGS);
         }
-        before = here;
+        search.keep_exact(&here);
+        before = Some(here);
     }
-    Onsets { slips: found, complete: search.complete }
+    Onsets { slips: search.found, complete: search.complete }
+}
+
+/// The rays at an angle, each with its misfit.
+struct AtAngle {
+    angle: f64,
+    rays: Vec<(Ray, f64)>,
 }
 
 /// The searches at the angles of one entity, and the effort that is left for them.
@@ -93,9 +80,56 @@ struct CircleSearch<'a> {
     touch: &'a Touch,
     effort: Effort<'a>,
     complete: bool,
+    found: Vec<Turning>,
 }
 
 impl CircleSearch<'_> {
+    /// Keeps the rays without misfit.
+    fn keep_exact(&mut self, here: &AtAngle) {
+        for (ray, _) in here.rays.iter().filter(|(_, misfit)| misfit.abs() <= MISFIT_TOLERANCE) {
+            self.touch.keep(&mut self.found, self.problem, ray.clone(), here.angle);
+        }
+    }
+
+    /// Keeps the slips between two angles. Where a ray turns too fast for its neighbour to be told, the sector is halved, so
+    /// often at most.
+    fn between(&mut self, before: &AtAngle, here: &AtAngle, halvings: usize) {
+        let problem = self.problem;
+        let goes_on = |(ray, _): &(Ray, f64)| {
+            let same = before.rays.iter().filter(|(other, _)| other.chosen() == ray.chosen());
+            let mut cosines = same.map(|(other, _)| cosine(problem, other, ray)).peekable();
+            cosines.peek().is_none() || cosines.any(|cosine| cosine > SMALLEST_RAY_COSINE)
+        };
+        if halvings > 0 && !here.rays.iter().all(goes_on) {
+            let angle = 0.5 * (before.angle + here.angle);
+            let middle = AtAngle { angle, rays: self.rays(angle) };
+            self.keep_exact(&middle);
+            self.between(before, &middle, halvings - 1);
+            self.between(&middle, here, halvings - 1);
+            return;
+        }
+        for (ray, misfit) in here.rays.iter().filter(|(_, misfit)| misfit.abs() > MISFIT_TOLERANCE) {
+            let partner = before.rays.iter().find(|(other, other_misfit)| {
+                other.chosen() == ray.chosen()
+                    && misfit * other_misfit < 0.0
+                    && other_misfit.abs() > MISFIT_TOLERANCE
+                    && cosine(problem, other, ray) > SMALLEST_RAY_COSINE
+            });
+            let Some((other, other_misfit)) = partner else { continue };
+            let mut last_ray = other.clone();
+            let evaluate = |angle: f64| {
+                let near = self.rays(angle).into_iter().filter(|(one, _)| one.chosen() == ray.chosen());
+                let (one, value) =
+                    near.max_by(|a, b| cosine(problem, &a.0, ray).total_cmp(&cosine(problem, &b.0, ray)))?;
+                last_ray = one;
+                Some(value)
+            };
+            if let Some(root) = find_root(evaluate, (before.angle, *other_misfit), (here.angle, *misfit), 1e-15) {
+                self.touch.keep(&mut self.found, problem, last_ray, root);
+            }
+        }
+    }
+
     /// The rays at an angle, each with its misfit; none where no effort is left.
     fn rays(&mut self, angle: f64) -> Vec<(Ray, f64)> {
         if self.effort.most_modes == 0 || self.effort.cancel.is_cancelled() {

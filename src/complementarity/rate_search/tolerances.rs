@@ -28,9 +28,9 @@ pub(crate) const COEFFICIENT_ROUND_OFF: f64 = 1e-12;
 pub(crate) const RAY_DISTANCE: f64 = 1e-9;
 
 /// Least cosine between the motions of rays at neighbouring angles that belong together. Neighbouring angles differ by
-/// 0.1 (cosine 0.995); 0.9, an angle of 0.45, lets the motion turn four times as fast as the direction. The value is a
-/// heuristic: a larger one misses roots where the motion turns fast, and a smaller one joins unrelated rays, for which
-/// the root is sought in vain.
+/// 0.1 (cosine 0.995); 0.9, an angle of 0.45, lets the motion turn four times as fast as the direction. Where it
+/// turns faster, the angles between are searched, too: a larger value costs searches, and a smaller one joins unrelated
+/// rays, for which the root is sought in vain.
 pub(crate) const SMALLEST_RAY_COSINE: f64 = 0.9;
 
 /// Misfit of the traction (relative to the force rates) up to which an angle is a root; motions and forces up to this

@@ -247,7 +247,10 @@ fn rotations(scope: &Scope, around: &Surroundings, stage: &Stage, at: &DocumentP
         if scope.turning.get(name.as_str()).is_some_and(|first| Some(*first) != pivot) {
             mistakes.add(&at, || {
                 let name = quoted(name);
-                format!("{name} turns about another point or axis in an earlier stage; the same is expected in all")
+                format!(
+                    "{name} turns about another point or axis in an earlier stage; the same `about` and direction of `axis` are \
+                     expected in all"
+                )
             });
             continue;
         }
