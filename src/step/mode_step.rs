@@ -21,7 +21,8 @@ use crate::step::event_location::StepPoints;
 use crate::step::interpolation::PlacedPoint;
 use crate::step::singular_step;
 use crate::step::tolerances::{
-    BOUND_TOLERANCE, COINCIDENCE_TOLERANCE, LARGEST_TURN, LARGEST_TURN_CORRECTION, SETTLED_ANGLE, SMALLEST_COSINE,
+    BOUND_TOLERANCE, COINCIDENCE_TOLERANCE, LARGEST_TURN, LARGEST_TURN_CORRECTION, LOAD_RATE_ROUNDING, SETTLED_ANGLE,
+    SMALLEST_COSINE,
 };
 
 /// The start of a step.
@@ -424,6 +425,10 @@ impl StepStart<'_> {
     }
 
     pub(crate) fn zero(&self, event_function: EventFunction, reached: &Reached) -> f64 {
+        let is_flat = [self.rate.load, reached.rate.load].iter().all(|rate| rate.abs() <= LOAD_RATE_ROUNDING);
+        if is_flat && matches!(event_function, EventFunction::LoadRate { .. }) {
+            return LOAD_RATE_ROUNDING;
+        }
         let force_scale = self.force_scale.max(reached.corrected.force_scale);
         event_function.zero(self.loading, &reached.corrected.state, force_scale)
     }

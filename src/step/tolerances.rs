@@ -74,6 +74,11 @@ pub(crate) const SETTLED_ANGLE: f64 = 1e-10;
 /// the violation 1e-10 that an accepted point may have.
 pub(crate) const EVENT_TOLERANCE: f64 = 1e-13;
 
+/// Load rate up to which both ends of a step may be for the load to count as constant: the rounding of a rate of unit length
+/// by a matrix of condition 1e4. A body that slides down a slope leaves up to 5e-13; a maximum between two such rates
+/// would rise above them by less than the rounding of the load.
+pub(crate) const LOAD_RATE_ROUNDING: f64 = 5e-12;
+
 /// Distance (dimensionless) within which a bound of the stage is reached. Load and displacements at a point have errors
 /// of some 1e-13; a last solve meets the bound exactly, so that the value only has to exceed these errors and to stay
 /// far below the shortest step 1e-9.

@@ -250,6 +250,39 @@ fn a_drum_that_turns_pulls_its_belt() {
     }
 }
 
+/// A solid on a slope that tilts about an oblique axis slides as a whole at `atan μ`, under a load that does not change: the
+/// rounding of the load rate is no limit point.
+#[test]
+fn a_solid_that_slides_down_a_slope_has_no_limit_points() {
+    let node = |place: usize| format!("n{}{}{}", place & 1, place >> 1 & 1, place >> 2);
+    let at =
+        |place: usize| json!([2 * (place & 1) as i32 - 1, 2 * (place >> 1 & 1) as i32 - 1, 0.5 * (place >> 2) as f64]);
+    let nodes: serde_json::Map<String, Value> = (0..8).map(|place| (node(place), at(place))).collect();
+    let names: Vec<String> = [0, 1, 3, 2, 4, 5, 7, 6].map(node).to_vec();
+    let request = typed(json!({
+        "model": {
+            "dimension": 3, "nodes": nodes,
+            "materials": {"rubber": {"kind": "neo_hookean", "young": 10, "poisson": 0}},
+            "elements": [{"kind": "hexahedron8", "nodes": names, "material": "rubber"}],
+            "surfaces": {"bottom": {"faces": [names[..4]]}},
+            "obstacles": {"slope": {"kind": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}},
+            "contacts": ([0, 1, 2, 3].map(|place| json!({"node": node(place), "obstacle": "slope", "friction": 0.3}))),
+            "stages": [
+                {"name": "weigh", "body_forces": {"rubber": [0, 0, -0.02]}, "until": {"load_above": 1}},
+                {"name": "tilt", "obstacle_rotation": {"slope": {"angle": 1, "axis": [1, 0.4, 0]}}, "until": {"load_above": 1}},
+            ],
+        },
+        "analysis": {"max_increments": 120},
+    }));
+    let traced = judged(&request);
+    let worst = traced.errors.iter().map(|errors| errors.largest_of_state()).fold(0.0, f64::max);
+    assert!(worst <= 1e-10, "{worst}");
+    let last = traced.increments.last().expect("an increment");
+    close(last.load_factor, 0.3_f64.atan(), 1e-12, "full slip");
+    let limits = traced.increments.iter().filter(|increment| increment.point.kind == PointKind::SmoothLimit).count();
+    assert_eq!(limits, 0);
+}
+
 /// Two obstacles in one place that turn alike share their reaction; as one obstacle they give the same path.
 #[test]
 fn coincident_obstacles_that_turn_alike_are_one() {
