@@ -75,8 +75,8 @@ pub(crate) const SETTLED_ANGLE: f64 = 1e-10;
 pub(crate) const EVENT_TOLERANCE: f64 = 1e-13;
 
 /// Load rate up to which both ends of a step may be for the load to count as constant: the rounding of a rate of unit length
-/// by a matrix of condition 1e4. A body that slides down a slope leaves up to 5e-13; a maximum between two such rates
-/// would rise above them by less than the rounding of the load.
+/// by a matrix of condition 1e4. A body that slides down a slope leaves up to 5e-13; over a step of unit length a
+/// maximum between two such rates rises by less than the accepted residual 1e-11 of a point.
 pub(crate) const LOAD_RATE_ROUNDING: f64 = 5e-12;
 
 /// Distance (dimensionless) within which a bound of the stage is reached. Load and displacements at a point have errors

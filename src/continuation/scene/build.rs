@@ -11,7 +11,7 @@ use crate::mechanics::AUXILIARY_UNIT;
 use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::kinematics::Kinematics;
 use crate::mechanics::contact::obstacle::RigidSurface;
-use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size};
+use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit_of};
 use crate::mechanics::contact::{ContactPair, Sliding};
 use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::contact_jacobian;
@@ -193,15 +193,6 @@ pub(super) fn first_contacts(reported: &[Reported], count: usize) -> Vec<usize> 
 fn ordered(value: f64) -> u64 {
     let bits = value.to_bits();
     if value.is_sign_negative() { !bits } else { bits | (1 << 63) }
-}
-
-/// A vector of any length but 0, made a unit vector in space without overflow.
-fn unit_of(values: &[f64]) -> Vector {
-    let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-    let size = norm(&values.iter().map(|value| value / largest).collect::<Vec<f64>>()) * largest;
-    let mut unit = [0.0; 3];
-    unit.iter_mut().zip(values).for_each(|(component, value)| *component = value / size);
-    unit
 }
 
 /// Whether two contacts coincide: the same node and the same surface.

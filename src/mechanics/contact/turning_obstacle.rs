@@ -54,7 +54,7 @@ impl NodeAtTurningObstacle {
         RelativePlacement { sine: angle.sin(), versine: 2.0 * half * half, relative }
     }
 
-    /// `(Rᵀ - I) v`, or `(R - I) v` for the opposite sine.
+    /// By Rodrigues' formula: `(Rᵀ - I) v`, or `(R - I) v` for the opposite sine.
     fn turned_by(&self, versine: f64, sine: f64, vector: &Vector) -> Vector {
         let across = cross(&self.axis, vector);
         add(&scaled(&across, -sine), versine, &cross(&self.axis, &across))

@@ -43,6 +43,15 @@ pub fn unit(a: &Vector) -> Vector {
     if size > 0.0 { [a[0] / size, a[1] / size, a[2] / size] } else { [0.0; 3] }
 }
 
+/// Up to three components of any length but 0, made a unit vector in space without overflow.
+pub(crate) fn unit_of(values: &[f64]) -> Vector {
+    let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let size = values.iter().map(|value| (value / largest).powi(2)).sum::<f64>().sqrt() * largest;
+    let mut unit = [0.0; 3];
+    unit.iter_mut().zip(values).for_each(|(component, value)| *component = value / size);
+    unit
+}
+
 /// The unit vector opposite to a traction; `otherwise` for zero traction.
 pub(crate) fn direction_of(traction: &Vector, otherwise: &Vector) -> Vector {
     let length = size(traction);

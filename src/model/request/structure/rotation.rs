@@ -1,6 +1,6 @@
 //! Rotations of obstacles.
 
-use crate::mechanics::contact::vector::{Vector, scaled, size};
+use crate::mechanics::contact::vector::{Vector, unit_of};
 use crate::model::request::structure::obstacle::Obstacle;
 use serde::{Deserialize, Serialize};
 
@@ -62,7 +62,12 @@ impl ObstacleRotation {
         };
         let axis = match dimension {
             2 => [0.0, 0.0, 1.0],
-            _ => unit_of(self.axis.as_ref().or(own_axis)?)?,
+            _ => self
+                .axis
+                .as_ref()
+                .or(own_axis)
+                .filter(|axis| axis.iter().any(|part| *part != 0.0))
+                .map(|axis| unit_of(axis))?,
         };
         Some(ObstaclePivot { place: padded(self.about.as_ref().or(own)?), axis })
     }
@@ -81,12 +86,4 @@ fn padded(values: &[f64]) -> Vector {
     let mut vector = [0.0; 3];
     vector.iter_mut().zip(values).for_each(|(component, value)| *component = *value);
     vector
-}
-
-/// The vector made a unit vector; `None` of a zero vector.
-fn unit_of(values: &[f64]) -> Option<Vector> {
-    let vector = padded(values);
-    let largest = vector.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-    let shrunk = scaled(&vector, 1.0 / largest);
-    (largest > 0.0).then(|| scaled(&shrunk, 1.0 / size(&shrunk)))
 }
