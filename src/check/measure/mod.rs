@@ -46,7 +46,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `errors` | the errors and their maxima |
-//! | `posted`, `elements`, `beams`, `space_beams`, `solids`, `obstacles`, `turning`, `polylines`, `bodies`, `numbers` | the posted model, with indices instead of names |
+//! | `posted`, `elements`, `beams`, `space_beams`, `solids`, `obstacles`, `middles`, `turning`, `polylines`, `bodies`, `numbers` | the posted model, with indices instead of names |
 //! | `contacts` | the check of one contact |
 //! | `global` | the balance of the whole structure, and the forces as reported |
 //! | `rows`, `apart` | the contacts with a row in an increment, and the contacts without a row |
@@ -60,6 +60,7 @@ pub(crate) mod elements;
 pub(crate) mod errors;
 pub(crate) mod global;
 pub(crate) mod history;
+mod middles;
 mod numbers;
 pub(crate) mod obstacles;
 mod polylines;
@@ -194,8 +195,11 @@ impl Workspace {
         match &contact.counterpart {
             Counterpart::Obstacle(_) => {
                 let force = posted.placement(contact, &self.loading).in_space(contacts::force(state, frame));
-                self.balance[contact.node] -= force;
-                outside.add(posted, contact.node, &self.displacements[contact.node], &force);
+                for (node, share) in &contact.point.shares {
+                    let part = force * *share;
+                    self.balance[*node] -= part;
+                    outside.add(posted, *node, &self.displacements[*node], &part);
+                }
             }
             Counterpart::Body(body) if state.normal_reaction != 0.0 => {
                 let here = body.state(&self.displacements);
@@ -277,11 +281,11 @@ impl Judge {
             let contact = &self.posted.contacts[*index];
             let (motion, on_node) = match &contact.counterpart {
                 Counterpart::Obstacle(_) => {
-                    let place = &self.posted.nodes[contact.node].place;
+                    let (point, place) = (&contact.point, &contact.point.place);
                     let here = self.posted.placement(contact, &self.work.loading);
                     let before = self.posted.placed_at(contact, &self.before.shifts, &self.before.turns);
-                    let (moved, _) = here.relative(place, &self.work.displacements[contact.node]);
-                    let (moved_before, _) = before.relative(place, &self.before.displacements[contact.node]);
+                    let (moved, _) = here.relative(place, &point.displacement(&self.work.displacements));
+                    let (moved_before, _) = before.relative(place, &point.displacement(&self.before.displacements));
                     (moved - moved_before, here.in_space(contacts::force(state, frame)))
                 }
                 Counterpart::Body(body) => {

@@ -3,6 +3,7 @@
 use crate::check::measure::bodies::MeasuredBody;
 use crate::check::measure::bodies::surface::TouchedSurfaces;
 use crate::check::measure::elements::MeasuredElement;
+use crate::check::measure::middles::{ContactPoint, middles};
 use crate::check::measure::numbers::{MeasuredVector, largest, padded};
 use crate::check::measure::obstacles::{MeasuredFrame, MeasuredObstacle};
 use crate::check::measure::solids::{MeasuredFace, SolidShares, pressed_surfaces};
@@ -53,7 +54,8 @@ impl PostedNode {
 
 #[derive(Debug, Clone)]
 pub(super) struct PostedContact {
-    pub node: usize,
+    /// Where the contact with an obstacle is measured.
+    pub point: ContactPoint,
     pub counterpart: Counterpart,
     /// The index of the obstacle among the moving obstacles, if the obstacle moves.
     pub motion: Option<usize>,
@@ -118,20 +120,29 @@ impl Posted {
             model.stages.iter().flat_map(|stage| stage.obstacle_motion.keys().chain(stage.obstacle_rotation.keys()));
         let moving: IndexSet<&str> = moved.map(String::as_str).collect();
         let touched = TouchedSurfaces::new(model);
+        let middles = middles(model);
+        let obstacles: Vec<MeasuredObstacle> = model.obstacles.values().map(MeasuredObstacle::new).collect();
         let contact = |contact: &crate::model::request::Contact| {
             let node = model.nodes.get_index_of(&contact.node)?;
             let friction = contact.friction;
+            let point = ContactPoint::at_node(node, padded(&model.nodes[node]));
             if let Some(body) = MeasuredBody::new(model, contact, &touched) {
                 return Some(PostedContact {
-                    node,
+                    point,
                     counterpart: Counterpart::Body(Box::new(body)),
                     motion: None,
                     friction,
                 });
             }
-            let counterpart = Counterpart::Obstacle(model.obstacles.get_index_of(&contact.obstacle)?);
+            let obstacle = model.obstacles.get_index_of(&contact.obstacle)?;
+            let at_rest = MeasuredVector::zeros();
+            let gap_at = |place: &MeasuredVector| obstacles[obstacle].frame(model.dimension, place, &at_rest, 0.0).gap;
+            let point = match middles.get(contact.node.as_str()) {
+                Some(nodes) => ContactPoint::past_middle(*nodes, model, gap_at),
+                None => point,
+            };
             let motion = moving.get_index_of(contact.obstacle.as_str());
-            Some(PostedContact { node, counterpart, motion, friction })
+            Some(PostedContact { point, counterpart: Counterpart::Obstacle(obstacle), motion, friction })
         };
         let shares = SolidShares::new(model);
         let pressed: IndexMap<&str, Vec<MeasuredFace>> = pressed_surfaces(model).into_iter().collect();
@@ -172,8 +183,8 @@ impl Posted {
             reach: largest(&least).max(largest(&most)),
             nodes,
             elements: model.elements.iter().filter_map(|element| MeasuredElement::new(model, element)).collect(),
-            obstacles: model.obstacles.values().map(MeasuredObstacle::new).collect(),
             contacts: model.contacts.iter().filter_map(contact).collect(),
+            obstacles,
             moving: moving.iter().map(|name| MeasuredPivot::of(model, name)).collect(),
             is_revolved: is_revolved(model),
             stages: model.stages.iter().zip(scales).map(stage).collect(),
@@ -232,18 +243,20 @@ impl Posted {
         }
     }
 
-    /// The gap and the frame of the obstacle of a contact at the node of the contact, in the axes of the obstacle.
+    /// The gap and the frame of the obstacle of a contact at its point, in the axes of the obstacle.
     pub fn frame(
         &self,
         contact: &PostedContact,
         loading: &PostedLoading,
         displacements: &[MeasuredVector],
     ) -> MeasuredFrame {
-        let place = &self.nodes[contact.node].place;
         match &contact.counterpart {
             Counterpart::Obstacle(obstacle) => {
-                let (relative, reach) = self.placement(contact, loading).relative(place, &displacements[contact.node]);
-                self.obstacles[*obstacle].frame(self.dimension, place, &relative, reach)
+                let ContactPoint { place, offset, .. } = &contact.point;
+                let moved = contact.point.displacement(displacements);
+                let (relative, reach) = self.placement(contact, loading).relative(place, &moved);
+                let frame = self.obstacles[*obstacle].frame(self.dimension, place, &relative, reach);
+                MeasuredFrame { gap: frame.gap + offset, ..frame }
             }
             // In the axes of the surface that is touched.
             Counterpart::Body(body) => MeasuredFrame {

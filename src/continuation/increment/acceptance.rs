@@ -22,8 +22,10 @@ use crate::step::interpolation::PlacedPoint;
 /// Makes the reached point the present one and classifies it; `None` where its continuation would violate the contact
 /// laws.
 pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Option<Increment> {
-    let reached = accepted.reached;
-    trace.at.totals.add(&accepted.added);
+    let (reached, mut added) = (accepted.reached, accepted.added);
+    let step = trace.scene.arc_length(&trace.at.here.state, &reached.corrected.state, reached.step);
+    added.step = step;
+    trace.at.totals.add(&added);
     trace.at.counts.increments += 1;
     let here = &mut trace.at.here;
     let before = std::mem::replace(&mut here.state, reached.corrected.state);
@@ -41,7 +43,7 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
     here.signature = accepted.signature;
     let arriving = Arriving { modes: here.modes.clone(), load_sign: here.load_sign, counts: trace.at.counts };
     let at_bound = stages::at_bound(trace, &reached.rate);
-    let (step, joins) = (reached.step, accepted.joined > 0);
+    let joins = accepted.joined > 0;
     let arrival_rate = trace.passed.is_some().then(|| reached.rate.clone());
     let arrived = changes.then(|| trace.at.here.state.reactions.clone());
     let came = Came {
@@ -56,7 +58,7 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
         arrival.stop = Some(StopReason::Cycle);
     }
     let changed = joins || !all_continue(&trace.at.here.modes, &modes);
-    let creeps = step_control::reason_of_creep(trace, step, changed || at_bound || arrival.stage_ends);
+    let creeps = step_control::reason_of_creep(trace, reached.step, changed || at_bound || arrival.stage_ends);
     arrival.stop = arrival.stop.or(creeps);
     // A contact change may have redistributed reactions.
     if changes && !natural_residual::holds(trace.loading(), &trace.at.here.state, trace.at.totals.force_scale) {
@@ -86,7 +88,7 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
         before: &before,
         reactions,
         modes: &modes,
-        step: reached.step,
+        step,
         point,
         options: arrival.options,
         taken: arrival.taken,

@@ -105,7 +105,7 @@ fn emit(
     let state = &trace.at.here.state;
     let system = ModeSystem::new(trace.loading(), modes, state);
     let residual = newton::judged(&system, state.clone(), trace.at.totals.force_scale).residual;
-    let step = before.distance(state);
+    let step = distance(trace, before);
     trace.emit(Emitted {
         before,
         reactions: None,
@@ -121,9 +121,15 @@ fn emit(
     })
 }
 
+/// The arc length from a state to the present one.
+fn distance(trace: &PathTrace<'_>, before: &State) -> f64 {
+    let here = &trace.at.here.state;
+    trace.scene.arc_length(before, here, before.distance(here))
+}
+
 /// Counts the row from the state of the one before.
 fn note_step(trace: &mut PathTrace<'_>, before: &State) {
     trace.at.totals.index += 1;
-    trace.at.totals.arc_length += before.distance(&trace.at.here.state);
+    trace.at.totals.arc_length += distance(trace, before);
     trace.at.counts.increments += 1;
 }

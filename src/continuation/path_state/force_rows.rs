@@ -75,6 +75,7 @@ pub(crate) fn support_reactions(scene: &Scene, row: &RowSource<'_>) -> NodalValu
     let (structure, loading) = (row.loading.structure, row.loading);
     let mut unbalanced = vec![0.0; structure.freedoms()];
     node_contact_forces::write_out_of_balance(loading, row.state, &mut unbalanced);
+    scene.basis.forces_on_nodes(&structure.numbering, &mut unbalanced);
     let in_space = structure.dimension == 3;
     let mut moments = vec![0.0; if in_space { structure.freedoms() } else { 0 }];
     if in_space {

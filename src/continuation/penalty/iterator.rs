@@ -143,7 +143,7 @@ impl<'a> RegularisedPath<'a> {
         let AcceptedPenaltyStep { converged, stage_ends } = accepted;
         let before = std::mem::replace(&mut self.here, converged.point);
         let (external_work, dissipated) = work_and_dissipation(&self.system(), &before, &self.here);
-        let step = self.here.state.distance(&before.state);
+        let step = self.scene.arc_length(&before.state, &self.here.state, self.here.state.distance(&before.state));
         self.totals.add(&Added {
             step,
             external_work,

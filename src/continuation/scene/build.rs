@@ -18,6 +18,7 @@ use crate::mechanics::problem::contact_jacobian;
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::node_contact_forces::Corner;
 use crate::mechanics::structure::Structure;
+use crate::mechanics::structure::basis_transformation::{BasisTransformation, extrapolated};
 use crate::model::input::limits::PENETRATION_TOLERANCE;
 use crate::model::request::{self, Analysis, Model};
 use crate::model::solids::contact_surfaces::{BodyContact, ContactSurfaces};
@@ -37,8 +38,8 @@ pub(super) fn norm(values: &[f64]) -> f64 {
 pub(super) fn build_structure(
     model: &Model,
     numbers: &HashMap<&str, usize>,
-    length: f64,
-    force: f64,
+    (length, force): (f64, f64),
+    loaded_solids: &LoadedSolids<'_>,
     like: Option<&Structure>,
 ) -> Structure {
     let dimension = model.dimension;
@@ -49,9 +50,9 @@ pub(super) fn build_structure(
             .collect()
     };
     let mut supports: Vec<(usize, usize)> = model.supports.iter().flat_map(of_node).collect();
-    let mut elements = ElementBuilder::new(model, numbers, length, force).build();
+    let mut elements = ElementBuilder::new(model, numbers, length, force).build(&loaded_solids.basis);
     let pressed = pressed_surfaces(model);
-    add_pressure_faces(model, &pressed, length, &mut elements);
+    add_pressure_faces(model, loaded_solids, length, &mut elements);
     let nodes = model.nodes.len() + pressed.len() + TurningObstacles::of(model).auxiliary_nodes();
     supports.extend((model.nodes.len()..nodes).flat_map(|auxiliary| (0..dimension).map(move |k| (auxiliary, k))));
     Structure::like(like, dimension, nodes, &supports, elements)
@@ -69,7 +70,7 @@ pub(super) fn build_contacts(
     model: &Model,
     numbers: &HashMap<&str, usize>,
     length: f64,
-    (structure, turning): (&Structure, &TurningObstacles<'_>),
+    (structure, turning, basis): (&Structure, &TurningObstacles<'_>, &BasisTransformation),
     left_out: &mut Vec<LeftOut>,
 ) -> Contacts {
     let mut contacts: Vec<ContactPair> = Vec::new();
@@ -92,8 +93,9 @@ pub(super) fn build_contacts(
                 Err(_) => continue,
             },
             None => {
-                let kinematics = turning.kinematics(model, contact, node_number, length);
-                let built = build_contact(model, contact, node_number, length, structure, &curves);
+                let (place, gap) = place_and_gap(model, contact, node_number, basis, (length, &curves));
+                let kinematics = turning.kinematics(contact, node_number, &place, length);
+                let built = build_contact(model, contact, (node_number, &place, gap), (length, &curves), structure);
                 ContactPair { kinematics: kinematics.unwrap_or(Kinematics::Node(node_number)), ..built }
             }
         };
@@ -226,9 +228,12 @@ fn coincide(first: &ContactPair, second: &ContactPair) -> bool {
         && (first.initial_gap - second.initial_gap).abs() <= COINCIDENCE_TOLERANCE
 }
 
+/// Curves by the names of their polylines.
+type Curves<'a> = HashMap<&'a str, Arc<PlaneCurve>>;
+
 /// The curves of the polylines by name, relative to their origins; dimensionless. A model that was checked has one for
 /// each polyline.
-fn curves(model: &Model, length: f64) -> HashMap<&str, Arc<PlaneCurve>> {
+fn curves(model: &Model, length: f64) -> Curves<'_> {
     let polylines = model.obstacles.iter().filter_map(|(name, obstacle)| match obstacle {
         request::Obstacle::Polyline(polyline) => Some((name.as_str(), polyline)),
         request::Obstacle::Plane { .. } | request::Obstacle::Ball { .. } | request::Obstacle::Cylinder { .. } => None,
@@ -238,23 +243,41 @@ fn curves(model: &Model, length: f64) -> HashMap<&str, Arc<PlaneCurve>> {
         .collect()
 }
 
-fn build_contact(
+/// The place of a node whose contact with an obstacle is solved for, and the gap there if it is not that of the place: where
+/// the unknown of a middle of an edge is that of a [transformed basis](crate::mechanics::structure::basis_transformation),
+/// the combination of the gaps at the edge. One below zero, where a coarse face bulges, counts as closed.
+fn place_and_gap(
     model: &Model,
     contact: &request::Contact,
     node: usize,
+    basis: &BasisTransformation,
+    (length, curves): (f64, &Curves<'_>),
+) -> (Vec<f64>, Option<f64>) {
+    let place = &model.nodes[node];
+    let Some(ends) = basis.ends_of(node) else { return (place.clone(), None) };
+    let ends = ends.map(|end| &model.nodes[end]);
+    let gap = |place: &[f64]| surface_at(model, contact, place, length, curves).1;
+    let combined = extrapolated(gap(place), ends.map(|end| gap(end)));
+    let coordinates = place.iter().enumerate().map(|(k, value)| extrapolated(*value, ends.map(|end| end[k])));
+    (coordinates.collect(), Some(combined.max(0.0)))
+}
+
+/// The obstacle of a contact relative to a place, and the gap there.
+fn surface_at(
+    model: &Model,
+    contact: &request::Contact,
+    place: &[f64],
     length: f64,
-    structure: &Structure,
-    curves: &HashMap<&str, Arc<PlaneCurve>>,
-) -> ContactPair {
+    curves: &Curves<'_>,
+) -> (RigidSurface, f64) {
     let dimension = model.dimension;
-    let place = &model.nodes[&contact.node];
     // A gap within the round-off of the coordinates is closed.
     let snapped = |gap: f64, reach: f64| {
         let closed = gap.abs() <= PENETRATION_TOLERANCE * length + 4.0 * f64::EPSILON * reach;
         if closed { 0.0 } else { gap / length }
     };
     let reach = |values: &[f64]| place.iter().chain(values).fold(0.0_f64, |largest, value| largest.max(value.abs()));
-    let (obstacle, initial_gap) = match &model.obstacles[&contact.obstacle] {
+    match &model.obstacles[&contact.obstacle] {
         request::Obstacle::Ball { center, radius, side } => {
             let mut offset = [0.0; 3];
             (0..dimension).for_each(|k| offset[k] = (place[k] - center[k]) / length);
@@ -286,7 +309,19 @@ fn build_contact(
             let gap: f64 = (0..dimension).map(|k| (place[k] - point[k]) * unit[k]).sum();
             (RigidSurface::Plane { normal: unit }, snapped(gap, reach(point)))
         }
-    };
+    }
+}
+
+/// `at`: the node with the place and the gap of [`place_and_gap`].
+fn build_contact(
+    model: &Model,
+    contact: &request::Contact,
+    (node, place, gap): (usize, &[f64], Option<f64>),
+    (length, curves): (f64, &Curves<'_>),
+    structure: &Structure,
+) -> ContactPair {
+    let (obstacle, gap_of_place) = surface_at(model, contact, place, length, curves);
+    let initial_gap = gap.unwrap_or(gap_of_place);
     let sliding = sliding(structure, node);
     let coefficient = if sliding.directions() == 0 { 0.0 } else { contact.friction };
     let friction = CoulombFriction::new(coefficient);
@@ -425,6 +460,8 @@ impl ScaledModel<'_> {
             let freedom = structure.freedoms_of(model.nodes.len() + place).start;
             supports[freedom] = pressure * load_scale / force * length * length / AUXILIARY_UNIT;
         }
+        let is_held = |freedom: usize| structure.unknown_of[freedom].is_none();
+        self.loaded_solids.basis.prescribed(&structure.numbering, is_held, &mut supports);
         self.turning.each_support(stage, structure, |freedom, value, is_length| {
             supports[freedom] = value * load_scale / if is_length { length } else { 1.0 } / AUXILIARY_UNIT;
         });
@@ -478,6 +515,7 @@ pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scal
         let rotation = structure.numbering.rotations_of(numbers[name.as_str()]).start;
         forces[rotation] = moment * load_scale / force / length;
     }
+    loaded_solids.basis.forces_on_unknowns(&structure.numbering, &mut forces);
     let supports = scaled.driven_supports(stage, &displacements, load_scale);
     let shift = |contact: &request::Contact| {
         let mut shift: Vector = [0.0; 3];

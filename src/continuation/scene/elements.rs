@@ -1,5 +1,6 @@
 //! The elements of a request, dimensionless: lengths over `ℓ`, forces over `φ`, moments over `φ ℓ`.
 
+use crate::mechanics::structure::basis_transformation::BasisTransformation;
 use crate::mechanics::structure::element_list::ElementList;
 use crate::mechanics::structure::elements::bar::Bar;
 use crate::mechanics::structure::elements::beam::Beam;
@@ -30,7 +31,8 @@ impl<'a> ElementBuilder<'a> {
         Self { model, numbers, length, force, rotations }
     }
 
-    pub fn build(mut self) -> ElementList {
+    /// `basis`: of the unknowns of solids.
+    pub fn build(mut self, basis: &BasisTransformation) -> ElementList {
         let mut elements = ElementList::default();
         for element in &self.model.elements {
             match element {
@@ -44,7 +46,7 @@ impl<'a> ElementBuilder<'a> {
                 }
                 _ => {
                     if let Some(solid) = self.solid(element) {
-                        solid.add_to(&mut elements);
+                        solid.add_to(&mut elements, basis);
                     }
                 }
             }

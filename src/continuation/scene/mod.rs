@@ -28,7 +28,9 @@ mod warnings;
 
 use crate::mechanics::contact::ContactPair;
 use crate::mechanics::problem::node_contact_forces::Corner;
+use crate::mechanics::problem::state::State;
 use crate::mechanics::structure::Structure;
+use crate::mechanics::structure::basis_transformation::BasisTransformation;
 use crate::mechanics::structure::element_list::ElementList;
 use crate::model::request::{Analysis, JobRequest, Model};
 use crate::model::{InputError, InputErrors};
@@ -42,6 +44,7 @@ pub(crate) use reported::Reported;
 use scales::{RequestScales, scales};
 use solid_loads::LoadedSolids;
 pub(crate) use stage_load::StageLoad;
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 use turning_obstacles::TurningObstacles;
@@ -50,6 +53,8 @@ use turning_obstacles::TurningObstacles;
 #[derive(Debug, Clone)]
 pub struct Scene {
     pub(crate) structure: Structure,
+    /// From the unknowns to the displacements of the nodes.
+    pub(crate) basis: BasisTransformation,
     /// Contacts that are solved for; coincident contacts of a node are merged into one.
     pub(crate) contacts: Vec<ContactPair>,
     /// Names of the nodes and obstacles of these contacts.
@@ -165,14 +170,14 @@ impl Scene {
         let loaded_solids = LoadedSolids::new(model, &numbers);
         let scales = scales(model, &request.analysis, &numbers, &loaded_solids, like);
         let RequestScales { length, force, resistances, stretched, structure } = scales;
-        let mut structure = build_structure(model, &numbers, length, force, structure.as_ref().or(like));
+        let mut structure = build_structure(model, &numbers, (length, force), &loaded_solids, structure.as_ref().or(like));
         if !parts.elements.is_empty() {
             structure = structure.with_elements(&parts.elements);
         }
         let mut left_out = Vec::new();
         let turning = TurningObstacles::of(model);
         let Contacts { mut contacts, mut contact_names, mut reported, corners } =
-            build_contacts(model, &numbers, length, (&structure, &turning), &mut left_out);
+            build_contacts(model, &numbers, length, (&structure, &turning, &loaded_solids.basis), &mut left_out);
         let first_contacts = first_contacts(&reported, contacts.len());
         for (node, obstacle, contact) in parts.contacts {
             let (node, obstacle) = (Arc::<str>::from(node), Arc::<str>::from(obstacle));
@@ -217,6 +222,7 @@ impl Scene {
         let jumps = crate::continuation::scene::omitted_features::jumps(&analysis, &structure);
         let mut scene = Self {
             structure,
+            basis: loaded_solids.basis,
             contacts,
             contact_names,
             reported,
@@ -240,16 +246,27 @@ impl Scene {
         self.no_displacements.get_index(node).map_or("", |(name, _)| name)
     }
 
-    /// What increments report of a vector over all degrees of freedom: translations times `unit`, and the rotation of a
+    /// What increments report of the nodes' motion by a vector over all degrees of freedom: translations times `unit`, and the rotation of a
     /// node that has one.
     pub(crate) fn nodal_motion(&self, values: &[f64], unit: f64) -> NodalValues {
         let (structure, mut components) = (&self.structure, Vec::with_capacity(values.len()));
+        let mut values = Cow::Borrowed(values);
+        if !self.basis.is_identity() {
+            self.basis.displacements(&structure.numbering, values.to_mut());
+        }
         for (node, reported) in self.no_displacements.values().enumerate() {
             for (place, freedom) in structure.freedoms_of(node).enumerate().take(reported.len()) {
                 components.push(if place < structure.dimension { values[freedom] * unit } else { values[freedom] });
             }
         }
         self.no_displacements.with_components(components)
+    }
+
+    /// The arc length between two states as increments report it, by the displacements of the nodes, given that by the
+    /// unknowns.
+    pub(crate) fn arc_length(&self, from: &State, to: &State, by_unknowns: f64) -> f64 {
+        let (from, to) = (&from.displacement, &to.displacement);
+        self.basis.norm_of_displacements(&self.structure.numbering, from, to, by_unknowns)
     }
 
     /// The plan: features that the scene needs and those omitted.

@@ -191,10 +191,10 @@ pub(super) fn scales(
         let resistances = vec![force; model.stages.len()];
         return RequestScales { length, force, resistances, stretched: length / own, structure: None };
     }
-    let structure = build_structure(model, numbers, length, force, like);
+    let structure = build_structure(model, numbers, (length, force), loaded_solids, like);
     let turning = TurningObstacles::of(model);
     let Contacts { contacts, reported, .. } =
-        build_contacts(model, numbers, length, (&structure, &turning), &mut Vec::new());
+        build_contacts(model, numbers, length, (&structure, &turning, &loaded_solids.basis), &mut Vec::new());
     let first_contacts = first_contacts(&reported, contacts.len());
     let first_contacts = &first_contacts[..];
     let scaled = ScaledModel {

@@ -10,12 +10,14 @@
 
 use crate::continuation::scene::build::norm;
 use crate::continuation::scene::elements::ElementBuilder;
+use crate::mechanics::structure::basis_transformation::BasisTransformation;
 use crate::mechanics::structure::element_list::ElementList;
 use crate::mechanics::structure::elements::solid::any::each_traction_force;
 use crate::mechanics::structure::elements::solid::pressure_face::push_pressure_face;
 use crate::model::request::{Model, Stage};
 use crate::model::solids::data::{self, LoadedFace};
 use crate::model::solids::faces::surface_faces;
+use crate::model::solids::middle_nodes::basis_transformation;
 use indexmap::IndexSet;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -29,6 +31,8 @@ pub(super) struct LoadedSolids<'a> {
     areas: HashMap<&'a str, NodalShares>,
     /// See [`pressed_surfaces`].
     pressed: IndexSet<&'a str>,
+    /// Of the unknowns of solids.
+    pub basis: BasisTransformation,
 }
 
 /// A component of unit size: its nodal forces are the shares of the nodes.
@@ -36,7 +40,8 @@ const UNIT: [f64; 3] = [1.0, 0.0, 0.0];
 
 impl<'a> LoadedSolids<'a> {
     pub fn new(model: &'a Model, numbers: &'a HashMap<&'a str, usize>) -> Self {
-        let mut loaded = Self { pressed: pressed_surfaces(model), ..Self::default() };
+        let (pressed, basis) = (pressed_surfaces(model), basis_transformation(model));
+        let mut loaded = Self { pressed, basis, ..Self::default() };
         for stage in &model.stages {
             loaded.volumes.extend(stage.body_forces.keys().map(|name| (name.as_str(), NodalShares::new())));
             let surfaces = stage.tractions.keys().chain(stage.pressures.keys());
@@ -108,7 +113,12 @@ pub(super) fn pressed_surfaces(model: &Model) -> IndexSet<&str> {
 }
 
 /// Adds the faces of the pressed surfaces to the elements.
-pub(super) fn add_pressure_faces(model: &Model, pressed: &IndexSet<&str>, length: f64, elements: &mut ElementList) {
+pub(super) fn add_pressure_faces(
+    model: &Model,
+    LoadedSolids { pressed, basis, .. }: &LoadedSolids<'_>,
+    length: f64,
+    elements: &mut ElementList,
+) {
     if pressed.is_empty() {
         return;
     }
@@ -118,7 +128,7 @@ pub(super) fn add_pressure_faces(model: &Model, pressed: &IndexSet<&str>, length
         for LoadedFace { kind, idealisation, nodes, positions } in
             faces.iter().filter_map(|face| data::loaded_face(model, face, length))
         {
-            push_pressure_face(elements, (kind, idealisation), &nodes, &positions, auxiliary);
+            push_pressure_face(elements, (kind, idealisation), &nodes, &positions, auxiliary, basis);
         }
     }
 }

@@ -42,9 +42,9 @@ pub(super) fn solid_scales(
         return None;
     }
     let (own, force) = (size(model), stretching_force(model, numbers));
-    let structure = build_structure(model, numbers, own, force, like);
+    let structure = build_structure(model, numbers, (own, force), loaded_solids, like);
     let turning = TurningObstacles::of(model);
-    let contacts = build_contacts(model, numbers, own, (&structure, &turning), &mut Vec::new());
+    let contacts = build_contacts(model, numbers, own, (&structure, &turning, &loaded_solids.basis), &mut Vec::new());
     let first_contacts = &first_contacts(&contacts.reported, contacts.contacts.len())[..];
     let scaled = ScaledModel {
         model,

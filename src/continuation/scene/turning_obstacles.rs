@@ -44,14 +44,14 @@ impl<'a> TurningObstacles<'a> {
         self.obstacles.contains_key(obstacle)
     }
 
-    /// The kinematics of a contact, by the number of its node, if its obstacle turns.
-    pub fn kinematics(&self, model: &Model, contact: &Contact, node: usize, length: f64) -> Option<Kinematics> {
+    /// The kinematics of a contact, by the number of its node and its place, if its obstacle turns.
+    pub fn kinematics(&self, contact: &Contact, node: usize, place: &[f64], length: f64) -> Option<Kinematics> {
         let (pivot, auxiliary) = self.obstacles.get(contact.obstacle.as_str())?;
         let mut arm = [0.0; 3];
-        for ((arm, position), pivot) in arm.iter_mut().zip(&model.nodes[&contact.node]).zip(pivot.place) {
+        for ((arm, position), pivot) in arm.iter_mut().zip(place).zip(pivot.place) {
             *arm = (position - pivot) / length;
         }
-        let turned = NodeAtTurningObstacle::new(node, *auxiliary, model.dimension, arm, pivot.axis);
+        let turned = NodeAtTurningObstacle::new(node, *auxiliary, place.len(), arm, pivot.axis);
         Some(Kinematics::Coupled(Arc::new(turned)))
     }
 

@@ -11,6 +11,7 @@
 //! degrees of freedom a node has.
 
 pub mod assembly;
+pub mod basis_transformation;
 pub mod element_list;
 pub mod elements;
 pub mod following_loads;

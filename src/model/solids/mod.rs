@@ -4,3 +4,4 @@ pub(crate) mod closed_surfaces;
 pub(crate) mod contact_surfaces;
 pub(crate) mod data;
 pub(crate) mod faces;
+pub(crate) mod middle_nodes;

@@ -2,6 +2,7 @@
 
 use crate::check::measure::solids::{MeasuredSolid, padded};
 use crate::mechanics::structure::Structure;
+use crate::mechanics::structure::basis_transformation::BasisTransformation;
 use crate::mechanics::structure::element_list::ElementList;
 use crate::mechanics::structure::elements::solid::any::{AnySolid, SolidData};
 use crate::model::request::{Element, LockingMend, Material, Model, PlaneCondition, Solid, SolidKind};
@@ -57,7 +58,7 @@ fn solver(model: &Model, element: &Element) -> Option<Structure> {
     let nodes: Vec<usize> = (0..kind.nodes()).collect();
     let places: Vec<&[f64]> = model.nodes.values().map(Vec::as_slice).collect();
     let mut list = ElementList::default();
-    AnySolid::new(&data, &nodes, &data::positions(&places, idealisation, 1.0)).ok()?.add_to(&mut list);
+    AnySolid::new(&data, &nodes, &data::positions(&places, idealisation, 1.0)).ok()?.add_to(&mut list, &BasisTransformation::default());
     Some(Structure::new(model.dimension, nodes.len(), &[], list))
 }
 

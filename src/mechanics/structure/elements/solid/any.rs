@@ -1,11 +1,14 @@
 //! Solid elements of a kind that is known at run time.
 
+use crate::mechanics::structure::basis_transformation::BasisTransformation;
 use crate::mechanics::structure::element_list::ElementList;
+use crate::mechanics::structure::elements::FiniteElement;
 use crate::mechanics::structure::elements::materials::ElasticMaterial;
 use crate::mechanics::structure::elements::solid::loads::{body_force, dead_traction};
 use crate::mechanics::structure::elements::solid::shapes::faces::FaceKind;
 use crate::mechanics::structure::elements::solid::shapes::geometry::NodalPositions;
 use crate::mechanics::structure::elements::solid::shapes::kind::{Idealisation, LockingMend, SolidKind};
+use crate::mechanics::structure::elements::solid::transformed::push_transformed;
 use crate::mechanics::structure::elements::solid::{SolidElement, SolidElementError};
 use std::sync::Arc;
 
@@ -103,9 +106,12 @@ impl AnySolid {
         })
     }
 
-    /// Adds the element at the end of a list.
-    pub fn add_to(self, list: &mut ElementList) {
-        of_any!(self, element => list.push(element));
+    /// Adds the element at the end of a list, over the unknowns of a basis.
+    pub fn add_to(self, list: &mut ElementList, basis: &BasisTransformation) {
+        of_any!(self, element => {
+            let edges = basis.edges_among(element.nodes());
+            push_transformed(list, element, &edges);
+        });
     }
 
     /// Undeformed volume: of the thickness, or the whole revolution.

@@ -23,6 +23,7 @@ pub mod pressure_face;
 pub mod shapes;
 #[cfg(test)]
 mod tests;
+pub mod transformed;
 
 use crate::mechanics::structure::elements::materials::ElasticMaterial;
 use crate::mechanics::structure::elements::materials::linear_elastic::LinearElastic;

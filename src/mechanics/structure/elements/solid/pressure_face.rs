@@ -12,6 +12,7 @@
 //! [`loads`](crate::mechanics::structure::elements::solid::loads). The element stores no energy.
 
 use crate::mechanics::AUXILIARY_UNIT;
+use crate::mechanics::structure::basis_transformation::BasisTransformation;
 use crate::mechanics::structure::element_list::ElementList;
 use crate::mechanics::structure::elements::FiniteElement;
 use crate::mechanics::structure::elements::solid::any::leading;
@@ -19,6 +20,7 @@ use crate::mechanics::structure::elements::solid::formulations::nodal_sums::Noda
 use crate::mechanics::structure::elements::solid::loads::{pressure_force, write_pressure_stiffness};
 use crate::mechanics::structure::elements::solid::shapes::faces::{FaceKind, FacePositions};
 use crate::mechanics::structure::elements::solid::shapes::kind::Idealisation;
+use crate::mechanics::structure::elements::solid::transformed::push_transformed;
 
 /// A face of `N` nodes under a pressure.
 #[derive(Debug, Clone)]
@@ -116,12 +118,15 @@ pub fn push_pressure_face(
     nodes: &[usize],
     positions: &[[f64; 3]],
     auxiliary: usize,
+    basis: &BasisTransformation,
 ) {
     let nodes: Vec<usize> = nodes.iter().copied().chain([auxiliary]).collect();
+    let edges = basis.edges_among(&nodes);
     macro_rules! push {
-        ($count:literal, $dimension:literal) => {
-            list.push(PressureFace::<$count, $dimension> { nodes, positions: leading(positions), idealisation })
-        };
+        ($count:literal, $dimension:literal) => {{
+            let face = PressureFace::<$count, $dimension> { nodes, positions: leading(positions), idealisation };
+            push_transformed(list, face, &edges)
+        }};
     }
     match kind {
         FaceKind::Segment2 => push!(2, 2),

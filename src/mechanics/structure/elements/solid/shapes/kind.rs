@@ -66,6 +66,13 @@ pub enum LockingMend {
 /// full integration lose accuracy to volumetric locking.
 pub const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 
+/// The edges of a tetrahedron; the first three are those of a triangle.
+pub(super) const EDGES_OF_SIMPLEX: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
+
+/// The edges of a hexahedron; the first four are those of a quadrilateral.
+const EDGES_OF_CUBE: [[usize; 2]; 12] =
+    [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
+
 impl SolidKind {
     /// All kinds, in the order of their declaration.
     pub const ALL: [Self; 8] = [
@@ -88,6 +95,17 @@ impl SolidKind {
             Self::Quadrilateral8 | Self::Hexahedron8 => 8,
             Self::Tetrahedron10 => 10,
             Self::Hexahedron20 => 20,
+        }
+    }
+
+    /// The ends of the edges with a node in their middle, in the order of these nodes, which follow the corners.
+    pub fn edges_with_middle(self) -> &'static [[usize; 2]] {
+        match self {
+            Self::Triangle3 | Self::Quadrilateral4 | Self::Tetrahedron4 | Self::Hexahedron8 => &[],
+            Self::Triangle6 => &EDGES_OF_SIMPLEX[..3],
+            Self::Tetrahedron10 => &EDGES_OF_SIMPLEX,
+            Self::Quadrilateral8 => &EDGES_OF_CUBE[..4],
+            Self::Hexahedron20 => &EDGES_OF_CUBE,
         }
     }
 

@@ -4,6 +4,8 @@
 //! fill the unit simplex, with linear or quadratic functions (O. C. Zienkiewicz, R. L. Taylor, J. Z. Zhu, *The Finite
 //! Element Method: Its Basis and Fundamentals*, 2013, chapter 6). All quantities are dimensionless.
 
+use crate::mechanics::structure::elements::solid::shapes::kind::EDGES_OF_SIMPLEX;
+
 /// The shape functions at a quadrature point of an element with `N` nodes and `D` natural coordinates.
 #[derive(Debug, Clone, Copy)]
 pub struct ShapePoint<const N: usize, const D: usize> {
@@ -48,10 +50,6 @@ pub const HEXAHEDRON: [[f64; 3]; 20] = [
     [-1.0, 1.0, 0.0],
 ];
 
-/// The corners that the middle nodes of a triangle, and the first three of a tetrahedron, lie between; then the rest of a
-/// tetrahedron's.
-const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
-
 /// The functions of a segment, quadrilateral or hexahedron: linear for `N = 2^D` nodes, else of the serendipity family.
 /// `nodes`: natural coordinates of the nodes, of which the first `N` are used; `point`: place and weight.
 pub fn of_cube<const N: usize, const D: usize>(nodes: &[[f64; D]], (at, weight): ([f64; D], f64)) -> ShapePoint<N, D> {
@@ -89,7 +87,7 @@ pub fn of_simplex<const N: usize, const D: usize>((at, weight): ([f64; D], f64))
     };
     let mut shape = ShapePoint { weight, place: at, values: [0.0; N], gradients: [[0.0; D]; N] };
     for (place, (value, gradient)) in shape.values.iter_mut().zip(&mut shape.gradients).enumerate() {
-        if let Some([one, other]) = place.checked_sub(D + 1).and_then(|edge| EDGES.get(edge)) {
+        if let Some([one, other]) = place.checked_sub(D + 1).and_then(|edge| EDGES_OF_SIMPLEX.get(edge)) {
             let (first, second) = (barycentric(*one), barycentric(*other));
             *value = 4.0 * first * second;
             *gradient = std::array::from_fn(|axis| 4.0 * (slope(*one, axis) * second + first * slope(*other, axis)));
