@@ -310,6 +310,41 @@ def same_path(row):
     return {**row, "diagnostics": {**row["diagnostics"], "elapsed_s": 0.0}}
 
 
+def pressed_block():
+    """Two quadratic hexahedra on a floor under an even traction of 0.06."""
+    corners = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2)]
+    edges = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+    nodes, elements, top = {}, [], []
+    for cell in range(2):
+        own = [(x + 2 * cell, y, z) for x, y, z in corners]
+        own += [tuple((a + b) // 2 for a, b in zip(own[one], own[other])) for one, other in edges]
+        names = ["n%d_%d_%d" % place for place in own]
+        nodes.update({name: [0.5 * part for part in place] for name, place in zip(names, own)})
+        elements.append({"kind": "hexahedron20", "nodes": names, "material": "rubber"})
+        top.append([name for name in names if name.endswith("_2")])
+    return {"model": {
+        "dimension": 3, "nodes": nodes, "elements": elements,
+        "materials": {"rubber": {"kind": "neo_hookean", "young": 10, "poisson": 0.3}},
+        "surfaces": {"top": {"faces": top}}, "supports": {"n0_0_0": ["x", "y"], "n4_0_0": ["y"]},
+        "obstacles": {"floor": {"kind": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}},
+        "contacts": [{"node": name, "obstacle": "floor"} for name in nodes if name.endswith("_0")],
+        "stages": [{"name": "press", "tractions": {"top": [0, 0, -0.06]}, "until": {"load_above": 1}}]}}
+
+
+def check_contact_pressure(program, folder):
+    """An even traction is an even contact pressure."""
+    model = folder / "pressed.json"
+    model.write_text(json.dumps(pressed_block()))
+    solve(program, model, folder / "pressed.pvd")
+    last = sorted((folder / "pressed").glob("*.vtu"))[-1]
+    pressure = vtk_to_numpy(read_piece(last).GetPointData().GetArray("contact_pressure"))
+    closed = pressure[~numpy.isnan(pressure)]
+    Check.equal("nodes with a contact pressure", len(closed), 13)
+    if abs(closed / 0.06 - 1.0).max() > 1e-9:
+        raise SystemExit(f"contact pressures of an even traction of 0.06: {closed}")
+    print(f"pressed block: contact pressure 0.06 within {abs(closed / 0.06 - 1.0).max():.1e} at {len(closed)} nodes")
+
+
 def check_files(program, folder, name, request):
     model = folder / f"{name}.json"
     model.write_text(json.dumps(request))
@@ -397,6 +432,7 @@ def main():
         models["beams"] = json.loads(beams.read_text())
         for name, request in models.items():
             check_files(arguments.program, folder, name, request)
+        check_contact_pressure(arguments.program, folder)
         check_http(arguments.program, folder, models)
         print(f"{Check.compared} values compared, none differs")
 

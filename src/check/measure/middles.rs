@@ -82,7 +82,8 @@ pub(super) fn middles(model: &Model) -> HashMap<&str, [usize; 3]> {
             && held(nodes[0]).iter().all(ends_hold)
             && !asked_for.contains(nodes[0])
     };
-    let past = found.into_iter().filter_map(|(name, nodes)| Some((name, nodes.filter(|nodes| is_measured_past(nodes))?)));
+    let past =
+        found.into_iter().filter_map(|(name, nodes)| Some((name, nodes.filter(|nodes| is_measured_past(nodes))?)));
     let number = |node: &str| model.nodes.get_index_of(node);
     past.filter_map(|(name, [m, a, b])| Some((name, [number(m)?, number(a)?, number(b)?]))).collect()
 }
@@ -106,7 +107,8 @@ fn asked_for(model: &Model) -> HashSet<&str> {
             all.extend(faces.flatten().map(String::as_str));
         }
     }
-    let ends = model.stages.iter().filter_map(|stage| stage.until.as_ref()).filter_map(|until| until.displacement.as_ref());
+    let ends =
+        model.stages.iter().filter_map(|stage| stage.until.as_ref()).filter_map(|until| until.displacement.as_ref());
     all.extend(ends.map(|end| end.node.as_str()));
     all
 }

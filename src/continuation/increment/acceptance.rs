@@ -68,6 +68,9 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
     }
     let stage = &trace.scene.stages[trace.at.stage];
     let stage_ends = arrival.stage_ends || at_bound || trace.at.counts.end_stage(&stage.ends);
+    // The next stage may hold what moves freely in this one.
+    arrival.stop =
+        arrival.stop.filter(|stop| !(stage_ends && *stop == StopReason::Mechanism && reached.event.is_none()));
     let mut point = arrival.point;
     let unstable = !stage_ends && arrival.stop.is_none() && loses_stability(trace, point.kind, negative_before);
     let is_turned = arriving.load_sign >= 0.0 && trace.at.here.load_sign < 0.0;

@@ -3,7 +3,7 @@
 use crate::branching::bifurcation::locate::Crossing;
 use crate::branching::bifurcation::{branch_directions, simultaneous_limit_points};
 use crate::branching::directions::arrival_tangent::Incoming;
-use crate::branching::directions::candidate::FoundDirections;
+use crate::branching::directions::candidate::{FoundDirections, is_mechanism};
 use crate::branching::directions::feasible_direction::{self, DirectionChoice, PriorMotion};
 use crate::branching::directions::trial_step::later_sign;
 use crate::branching::selection::{second_order, selection_rule};
@@ -163,7 +163,10 @@ fn look_around(
         let tolerance = 1e-8 * rules.force_scale;
         point.better_direction = options.iter().any(|option| !option.retrace && option.dissipation > kept + tolerance);
     }
-    Arrival { point, options, taken, stop: None, stage_ends, unconfirmed: false }
+    // Where directions of slip have become parallel, what moves on moves without end.
+    let moves_freely = kind == PointKind::Regular && !stage_ends && is_mechanism(loading, &here.state, incoming);
+    let stop = moves_freely.then_some(StopReason::Mechanism);
+    Arrival { point, options, taken, stop, stage_ends, unconfirmed: false }
 }
 
 /// A limit point shared by several motions: the path continues in its own direction, the others are listed.

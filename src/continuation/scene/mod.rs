@@ -170,7 +170,8 @@ impl Scene {
         let loaded_solids = LoadedSolids::new(model, &numbers);
         let scales = scales(model, &request.analysis, &numbers, &loaded_solids, like);
         let RequestScales { length, force, resistances, stretched, structure } = scales;
-        let mut structure = build_structure(model, &numbers, (length, force), &loaded_solids, structure.as_ref().or(like));
+        let mut structure =
+            build_structure(model, &numbers, (length, force), &loaded_solids, structure.as_ref().or(like));
         if !parts.elements.is_empty() {
             structure = structure.with_elements(&parts.elements);
         }

@@ -33,7 +33,8 @@ pub(crate) fn basis_transformation(model: &Model) -> BasisTransformation {
                 continue;
             };
             let is_with_it = |end: &String| {
-                touched.get(end.as_str()).is_some_and(|of_end| obstacles.is_subset(of_end)) && is_held(model, end, middle)
+                touched.get(end.as_str()).is_some_and(|of_end| obstacles.is_subset(of_end))
+                    && is_held(model, end, middle)
             };
             let numbers = [middle, a, b].map(|node| model.nodes.get_index_of(node));
             if let ([Some(number), Some(first), Some(second)], true) = (numbers, is_with_it(a) && is_with_it(b)) {
@@ -56,7 +57,8 @@ fn is_held(model: &Model, end: &str, middle: &str) -> bool {
 fn asked_for(model: &Model) -> HashSet<&str> {
     let of_bodies = model.contacts.iter().filter(|contact| contact.against.is_some());
     let surfaces = of_bodies.clone().flat_map(|contact| [&contact.surface, &contact.against]).flatten();
-    let of_surfaces = surfaces.filter_map(|name| model.surfaces.get(name)).flat_map(|surface| surface.faces.iter().flatten());
+    let of_surfaces =
+        surfaces.filter_map(|name| model.surfaces.get(name)).flat_map(|surface| surface.faces.iter().flatten());
     let bounds = model.stages.iter().filter_map(|stage| stage.until.as_ref()?.displacement.as_ref());
     let named = of_bodies.map(|contact| &contact.node).chain(of_surfaces).chain(bounds.map(|bound| &bound.node));
     named.map(String::as_str).collect()

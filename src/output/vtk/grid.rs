@@ -4,6 +4,7 @@ use crate::model::JobRequest;
 use crate::model::request::recorded_forces::{recorded_elements, recorded_supports};
 use crate::model::request::{Element, Record, SolidKind, Units};
 use crate::output::vtk::arrays::{DataArray, text_array};
+use crate::output::vtk::contact_areas::contact_areas;
 use std::collections::HashMap;
 
 /// Types of cells: a point, for a spring to the ground, a line, and a line through several points.
@@ -46,6 +47,9 @@ pub struct Grid {
     pub(super) has_spring_forces: bool,
     pub(super) has_beam_forces: bool,
     pub(super) has_stresses: bool,
+    /// The areas that contacts stand for: for the place of a node the names of what it touches, each with the area. None where
+    /// no contact is recorded.
+    pub(super) contact_areas: HashMap<usize, Vec<(String, f64)>>,
     /// Labels of the model's units.
     pub(super) units: Units,
     /// What the path is called, written to every file.
@@ -81,6 +85,12 @@ impl Grid {
         let recorded = recorded_elements(request);
         let has = |is: fn(&Element) -> bool| recorded.iter().any(|place| is(&model.elements[*place]));
         let named = request.analysis.record.as_ref().and_then(Record::named_contacts);
+        let has_contacts = named.map_or(!model.contacts.is_empty(), |named| !named.is_empty());
+        let areas = has_contacts.then(|| contact_areas(model)).into_iter().flatten();
+        let mut areas_of: HashMap<usize, Vec<(String, f64)>> = HashMap::new();
+        for ((node, touched), area) in areas {
+            areas_of.entry(node).or_default().push((touched.to_owned(), area));
+        }
         Self {
             dimension: model.dimension,
             points: DataArray::numbers("points", 3, &points),
@@ -101,7 +111,8 @@ impl Grid {
                 .iter()
                 .any(|element| matches!(element, Element::Beam { .. } | Element::RotationalSpring { .. })),
             number_of_elements: nodes.len(),
-            has_contacts: named.map_or(!model.contacts.is_empty(), |named| !named.is_empty()),
+            has_contacts,
+            contact_areas: areas_of,
             has_supports: !recorded_supports(request).is_empty(),
             has_bar_forces: has(|element| matches!(element, Element::Bar { .. })),
             has_spring_forces: has(|element| matches!(element, Element::Spring { .. })),

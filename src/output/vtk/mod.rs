@@ -6,6 +6,7 @@
 
 pub mod arrays;
 pub mod collection;
+mod contact_areas;
 pub mod grid;
 pub mod piece;
 

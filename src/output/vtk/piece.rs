@@ -145,12 +145,13 @@ impl Grid {
     }
 
     /// Of a node with several contacts: the status that holds it most, the smallest gap, the sum of the reactions, the largest
-    /// normal reaction and the largest slip in total.
-    fn contact_arrays(&self, increment: &Increment) -> [DataArray; 5] {
+    /// normal reaction, the largest slip in total and the largest pressure.
+    fn contact_arrays(&self, increment: &Increment) -> Vec<DataArray> {
         let nodes = self.place_of_node.len();
         let mut statuses = vec![NO_CONTACT; nodes];
         let (mut gaps, mut reactions) = (vec![f64::NAN; nodes], vec![0.0; 3 * nodes]);
         let (mut normals, mut slips) = (vec![f64::NAN; nodes], vec![f64::NAN; nodes]);
+        let mut pressures = vec![f64::NAN; nodes];
         for contact in &increment.contacts {
             let Some(place) = self.place_of_node.get(&*contact.node) else { continue };
             let status = number_of(contact.status);
@@ -160,16 +161,24 @@ impl Grid {
             normals[*place] = normals[*place].max(contact.normal_reaction);
             let slip = contact.slip_total.iter().map(|part| part * part).sum::<f64>().sqrt();
             slips[*place] = slips[*place].max(slip);
+            let areas = self.contact_areas.get(place).into_iter().flatten();
+            if let Some((_, area)) = areas.into_iter().find(|(touched, _)| **touched == *contact.obstacle) {
+                pressures[*place] = pressures[*place].max(contact.normal_reaction / area);
+            }
             let own = &mut reactions[3 * place..3 * place + 3];
             own.iter_mut().zip(in_space(&contact.reaction)).for_each(|(sum, value)| *sum += value);
         }
-        [
+        let mut arrays = vec![
             DataArray::bytes("contact_status", statuses.into_iter()),
             DataArray::numbers("gap", 1, &gaps),
             DataArray::numbers("contact_reaction", 3, &reactions),
             DataArray::numbers("normal_reaction", 1, &normals),
             DataArray::numbers("slip_total", 1, &slips),
-        ]
+        ];
+        if !self.contact_areas.is_empty() {
+            arrays.push(DataArray::numbers("contact_pressure", 1, &pressures));
+        }
+        arrays
     }
 
     fn force_arrays(&self, increment: &Increment) -> Vec<DataArray> {

@@ -58,7 +58,9 @@ fn solver(model: &Model, element: &Element) -> Option<Structure> {
     let nodes: Vec<usize> = (0..kind.nodes()).collect();
     let places: Vec<&[f64]> = model.nodes.values().map(Vec::as_slice).collect();
     let mut list = ElementList::default();
-    AnySolid::new(&data, &nodes, &data::positions(&places, idealisation, 1.0)).ok()?.add_to(&mut list, &BasisTransformation::default());
+    AnySolid::new(&data, &nodes, &data::positions(&places, idealisation, 1.0))
+        .ok()?
+        .add_to(&mut list, &BasisTransformation::default());
     Some(Structure::new(model.dimension, nodes.len(), &[], list))
 }
 

@@ -105,9 +105,10 @@ mod tests {
         let corners = [[0.0, 0.0, 0.0], [1.0, 0.1, 0.0], [0.1, 1.2, 0.1], [0.0, 0.2, 0.9]];
         let middles = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
         let mut places = corners.to_vec();
-        places.extend(middles.map(|[a, b]: [usize; 2]| {
-            std::array::from_fn::<f64, 3, _>(|k| 0.5 * (corners[a][k] + corners[b][k]))
-        }));
+        places.extend(
+            middles
+                .map(|[a, b]: [usize; 2]| std::array::from_fn::<f64, 3, _>(|k| 0.5 * (corners[a][k] + corners[b][k]))),
+        );
         let moduli = ElasticModuli::from_young(2.0, 0.3).expect("moduli");
         let data = SolidData {
             kind: SolidKind::Tetrahedron10,

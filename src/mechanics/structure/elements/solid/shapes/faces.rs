@@ -39,18 +39,6 @@ impl FaceKind {
             Self::Quadrilateral8 => 8,
         }
     }
-
-    /// The face as linear faces of the same nodes, with the same orientation: places of their nodes among its own.
-    pub fn linear_faces(self) -> &'static [&'static [usize]] {
-        match self {
-            Self::Segment2 => &[&[0, 1]],
-            Self::Segment3 => &[&[0, 2], &[2, 1]],
-            Self::Triangle3 => &[&[0, 1, 2]],
-            Self::Triangle6 => &[&[0, 3, 5], &[3, 1, 4], &[5, 4, 2], &[3, 4, 5]],
-            Self::Quadrilateral4 => &[&[0, 1, 2, 3]],
-            Self::Quadrilateral8 => &[&[0, 4, 7], &[4, 1, 5], &[5, 2, 6], &[7, 6, 3], &[4, 5, 6, 7]],
-        }
-    }
 }
 
 /// The faces of an element: places of their nodes among the element's.
@@ -165,54 +153,5 @@ pub fn face_thickness<const N: usize, const D: usize>(
         }
         Idealisation::PlaneStrain { thickness } | Idealisation::PlaneStress { thickness } => thickness,
         Idealisation::Space => 1.0,
-    }
-}
-
-/// The area that each node of a face stands for in contact: that of the linear faces of the same nodes, `∫ N_a dA`.
-///
-/// All are positive, where a constant pressure on the quadratic face itself has no forces at the corners of a triangle,
-/// and pulling ones at the corners of a quadrilateral. Their sum is the area of the linear faces.
-pub fn contact_weights<const N: usize, const D: usize>(
-    positions: &[[f64; D]; N],
-    idealisation: Idealisation,
-) -> [f64; N]
-where
-    [[f64; D]; N]: FacePositions<N, D>,
-{
-    let mut weights = [0.0; N];
-    for face in <[[f64; D]; N]>::KIND.linear_faces() {
-        match **face {
-            [a, b] => add_areas(&mut weights, positions, idealisation, [a, b], &SEGMENT_POINTS),
-            [a, b, c] => add_areas(&mut weights, positions, idealisation, [a, b, c], &TRIANGLE_POINTS),
-            [a, b, c, d] => add_areas(&mut weights, positions, idealisation, [a, b, c, d], &QUADRILATERAL_POINTS),
-            _ => {}
-        }
-    }
-    weights
-}
-
-static SEGMENT_POINTS: LazyLock<Vec<FacePoint<2>>> =
-    LazyLock::new(|| gauss::<1>(2).into_iter().map(|point| FacePoint::of(of_cube(&SEGMENT, point))).collect());
-static TRIANGLE_POINTS: LazyLock<Vec<FacePoint<3>>> = LazyLock::new(|| {
-    triangle_of_degree_4().into_iter().map(|point| FacePoint::of(of_simplex::<3, 2>(point))).collect()
-});
-static QUADRILATERAL_POINTS: LazyLock<Vec<FacePoint<4>>> =
-    LazyLock::new(|| gauss::<2>(2).into_iter().map(|point| FacePoint::of(of_cube(&QUADRILATERAL, point))).collect());
-
-/// Adds the areas of the nodes of a linear face.
-fn add_areas<const M: usize, const N: usize, const D: usize>(
-    weights: &mut [f64; N],
-    positions: &[[f64; D]; N],
-    idealisation: Idealisation,
-    nodes: [usize; M],
-    points: &[FacePoint<M>],
-) {
-    let own = nodes.map(|node| positions[node]);
-    for point in points {
-        let [first, second] = tangents(&own, point);
-        let normal = cross(&first, &second);
-        let size = normal.iter().map(|value| value * value).sum::<f64>().sqrt();
-        let area = size * point.weight * face_thickness(&own, idealisation, point);
-        nodes.iter().zip(&point.values).for_each(|(node, value)| weights[*node] += area * value);
     }
 }

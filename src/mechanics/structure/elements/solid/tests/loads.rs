@@ -1,17 +1,19 @@
 //! Loads against totals, closed forms and difference quotients; faces and their orientation.
 
 use super::meshes::{STRAIN, STRESS, distorted, element, neo_hookean};
+use crate::mechanics::structure::basis_transformation::BasisTransformation;
 use crate::mechanics::structure::elements::solid::SolidElement;
 use crate::mechanics::structure::elements::solid::loads::{
     body_force, dead_traction, pressure_force, write_pressure_stiffness,
 };
-use crate::mechanics::structure::elements::solid::shapes::faces::{FaceKind, FacePositions, contact_weights, faces_of};
+use crate::mechanics::structure::elements::solid::shapes::faces::{FaceKind, FacePositions, faces_of};
 use crate::mechanics::structure::elements::solid::shapes::kind::{Idealisation, SolidKind};
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 type Positions = Vec<[f64; 3]>;
 
-/// Nodal forces of a pressure, or of a traction, and the contact weights, on a face of any kind.
+/// Nodal forces of a pressure, or of a traction, on a face of any kind.
 pub fn on_face(kind: FaceKind, positions: &[[f64; 3]], idealisation: Idealisation, load: &Load) -> Vec<f64> {
     macro_rules! of {
         ($nodes:literal, $dimension:literal) => {{
@@ -24,7 +26,6 @@ pub fn on_face(kind: FaceKind, positions: &[[f64; 3]], idealisation: Idealisatio
                     let traction = std::array::from_fn(|axis| traction[axis]);
                     dead_traction(&own, idealisation, traction).as_flattened().to_vec()
                 }
-                Load::Weights => contact_weights(&own, idealisation).to_vec(),
                 Load::Stiffness => {
                     let mut stiffness = vec![f64::NAN; $nodes * $nodes * $dimension * $dimension];
                     write_pressure_stiffness(&own, idealisation, 1.0, &mut stiffness);
@@ -46,7 +47,6 @@ pub fn on_face(kind: FaceKind, positions: &[[f64; 3]], idealisation: Idealisatio
 pub enum Load {
     Pressure,
     Traction([f64; 3]),
-    Weights,
     Stiffness,
 }
 
@@ -180,24 +180,10 @@ fn the_stiffness_of_a_pressure_is_its_derivative() {
     }
 }
 
+/// An even traction pulls at the corners of a square of 8 nodes; in the transformed basis it pushes everywhere.
 #[test]
-fn weights_of_contact_are_positive_and_make_the_area() {
-    for kind in KINDS {
-        for idealisation in idealisations(kind) {
-            let (face, places) = faces_of(kind);
-            // Straight edges: the linear faces make the whole face, except where a quadrilateral is warped.
-            let mesh = distorted(kind, 1);
-            for places in places {
-                let own: Positions = places.iter().map(|place| mesh.positions[mesh.elements[0][*place]]).collect();
-                let weights = on_face(face, &own, idealisation, &Load::Weights);
-                assert!(weights.iter().all(|weight| *weight > 0.0), "{kind:?} {weights:?}");
-                let traction = on_face(face, &own, idealisation, &Load::Traction([0.0, 1.0, 0.0]));
-                let total: f64 = traction.iter().sum();
-                let bound = if face == FaceKind::Quadrilateral8 { 2e-3 } else { 1e-13 };
-                assert!((weights.iter().sum::<f64>() - total).abs() <= bound * total, "{kind:?} {idealisation:?}");
-            }
-        }
-    }
+fn an_even_traction_pushes_everywhere_in_the_transformed_basis() {
+    let basis = BasisTransformation::new(BTreeMap::from([(4, [0, 1]), (5, [1, 2]), (6, [2, 3]), (7, [0, 3])]));
     // A constant traction on a square of 8 nodes: -1/12 at the corners, 1/3 in the middle of the edges.
     let square = distorted(SolidKind::Quadrilateral8, 1).lattice;
     let order = distorted(SolidKind::Quadrilateral8, 1).elements[0].clone();
@@ -207,10 +193,11 @@ fn weights_of_contact_are_positive_and_make_the_area() {
         let exact = if place < 4 { -1.0 / 12.0 } else { 1.0 / 3.0 };
         assert!((force[2] - exact).abs() <= 1e-14);
     }
-    let weights = on_face(FaceKind::Quadrilateral8, &own, Idealisation::Space, &Load::Weights);
-    for (place, weight) in weights.iter().enumerate() {
-        let exact = if place < 4 { 1.0 / 24.0 } else { 2.0 / 24.0 + 1.0 / 8.0 };
-        assert!((weight - exact).abs() <= 1e-14, "{place} {weight}");
+    let mut along: Vec<f64> = traction.chunks(3).map(|force| force[2]).collect();
+    basis.edges_among(&[0, 1, 2, 3, 4, 5, 6, 7]).iter().for_each(|edge| edge.distribute(&mut along));
+    for (place, force) in along.iter().enumerate() {
+        let exact = if place < 4 { 1.0 / 20.0 } else { 1.0 / 5.0 };
+        assert!((force - exact).abs() <= 1e-14, "{place} {force}");
     }
 }
 
