@@ -1,4 +1,4 @@
-//! Where a contact of a node with an obstacle is measured.
+//! Where a contact of a node with an obstacle is measured, and the middles of edges that follow their ends.
 //!
 //! Mostly at the node. At the middle `m` of the edge from `a` to `b` of quadratic solids in space, whose ends touch the same
 //! obstacles and are held wherever the middle is, it is measured at a point past the middle,
@@ -13,7 +13,7 @@
 
 use crate::check::measure::numbers::{MeasuredVector, padded};
 use crate::model::request::{Contact, Model, SolidKind};
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// The nodes that a contact is measured by, each with its share.
 #[derive(Debug, Clone)]
@@ -46,12 +46,36 @@ impl ContactPoint {
     }
 }
 
-/// The middles whose contacts with obstacles are measured past them: `[m, a, b]` by the name of `m`.
-pub(super) fn middles(model: &Model) -> HashMap<&str, [usize; 3]> {
+/// The middles that follow the ends of their edges, `u_m = (u_a + u_b)/2`: of quadratic faces where bodies touch each other.
+/// Half of the force on each goes to either end.
+pub(super) fn following(model: &Model) -> Vec<[usize; 3]> {
+    let bodies = model.contacts.iter().filter(|contact| contact.against.is_some());
+    let surfaces: HashSet<&String> =
+        bodies.flat_map(|contact| contact.surface.iter().chain(&contact.against)).collect();
+    if surfaces.is_empty() {
+        return Vec::new();
+    }
+    let edges = edges_with_middle(model);
+    let faces =
+        model.surfaces.iter().filter(|(name, _)| surfaces.contains(name)).flat_map(|(_, surface)| &surface.faces);
+    let of_face = |face: &Vec<String>| {
+        let on_face = |node: &&str| face.iter().any(|one| one == node);
+        let middles = face.iter().filter_map(|node| *edges.get(node.as_str())?);
+        let nodes = middles.filter(|edge| edge.iter().all(|node| on_face(node)));
+        let number = |node: &str| model.nodes.get_index_of(node);
+        nodes.filter_map(|[m, a, b]| Some([number(m)?, number(a)?, number(b)?])).collect::<Vec<_>>()
+    };
+    let all: BTreeMap<usize, [usize; 3]> = faces.flat_map(of_face).map(|edge| (edge[0], edge)).collect();
+    all.into_values().collect()
+}
+
+/// Each middle of an edge of quadratic solids as `[m, a, b]`; none at which another element joins.
+fn edges_with_middle(model: &Model) -> HashMap<&str, Option<[&str; 3]>> {
     let mut found: HashMap<&str, Option<[&str; 3]>> = HashMap::new();
-    for element in if model.dimension == 3 { &model.elements[..] } else { &[] } {
+    for element in &model.elements {
         let first = match element.solid() {
-            Some((SolidKind::Tetrahedron10, _)) => 4,
+            Some((SolidKind::Triangle6, _)) => 3,
+            Some((SolidKind::Quadrilateral8 | SolidKind::Tetrahedron10, _)) => 4,
             Some((SolidKind::Hexahedron20, _)) => 8,
             _ => element.nodes().len(),
         };
@@ -60,18 +84,28 @@ pub(super) fn middles(model: &Model) -> HashMap<&str, [usize; 3]> {
                 found.insert(node, None);
                 continue;
             };
-            let [a, b] = if first == 4 {
-                [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]][edge]
-            } else if edge < 8 {
-                let (layer, around) = (4 * (edge / 4), edge % 4);
-                [layer + around, layer + (around + 1) % 4]
-            } else {
-                [edge - 8, edge - 4]
+            let [a, b] = match (first, element.nodes().len()) {
+                (3, _) => [edge, (edge + 1) % 3],
+                (4, 10) => [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]][edge],
+                _ if edge < 8 => {
+                    let (layer, around) = (4 * (edge / 4), edge % 4);
+                    [layer + around, layer + (around + 1) % 4]
+                }
+                _ => [edge - 8, edge - 4],
             };
             let (Some(a), Some(b)) = (element.nodes().get(a), element.nodes().get(b)) else { continue };
             found.entry(node).or_insert(Some([node, a, b]));
         }
     }
+    found
+}
+
+/// The middles whose contacts with obstacles are measured past them: `[m, a, b]` by the name of `m`.
+pub(super) fn middles(model: &Model) -> HashMap<&str, [usize; 3]> {
+    if model.dimension != 3 || model.contacts.iter().all(|contact| contact.against.is_some()) {
+        return HashMap::new();
+    }
+    let found = edges_with_middle(model);
     let (touch, asked_for) = (touching(model), asked_for(model));
     let is_measured_past = |nodes: &[&str; 3]| {
         let [of_middle, of_a, of_b] = nodes.map(|node| touch.get(node));

@@ -5,6 +5,7 @@
 //! equilibrium     max |Σ N d + K Δu - s f - f_held - Σ n r_n - Σ t r_t| / F   free components; F: largest force so far
 //!                 |moment| / (F ℓ) of free rotations, by the formulas of `beams`
 //! support         max |u - s u_given - u_held| / ℓ                           supported components, rotations
+//!                 |u_m - (u_a + u_b)/2| / ℓ                              middles of edges that follow their ends
 //! contact         max |min(g/ℓ, r_n/F)|                                      natural map of 0 <= g ⊥ r_n >= 0
 //! friction        max |t - P(t - x)|,   t = r_t/F,   x = Tᵀ(Δu - Δd)/ℓ        natural map of Coulomb's law;
 //!                 P: projection onto the disc of radius μ r_n/F;  d: the obstacle's translation
@@ -453,6 +454,14 @@ impl Judge {
             work.add_contact(posted, contact, state, &frame, &mut outside);
             most = most.max(state.normal_reaction.abs());
         }
+        for [middle, ends @ ..] in &posted.following {
+            let (force, rounding) = (work.balance[*middle], work.rounding[*middle]);
+            (work.balance[*middle], work.rounding[*middle]) = (MeasuredVector::zeros(), 0.0);
+            for end in ends {
+                work.balance[*end] += force * 0.5;
+                work.rounding[*end] += rounding;
+            }
+        }
         // A force that is not finite already gives an unbounded error; the scale of the other errors stays finite.
         if most.is_finite() {
             self.largest_force = most;
@@ -518,6 +527,9 @@ impl Judge {
         let components = self.posted.nodes.iter().zip(given).flat_map(|(node, (found, given))| {
             (0..self.posted.dimension).filter(|k| node.held[*k]).map(|k| (found[k] - given[k]).abs())
         });
+        let found = &self.work.displacements;
+        let off_chord = |[m, a, b]: &[usize; 3]| largest(&(found[*m] - (found[*a] + found[*b]) * 0.5));
+        let components = components.chain(self.posted.following.iter().map(off_chord));
         let turned = self.work.rotations.iter().zip(&self.work.loading.rotations);
         let rotations = self.posted.nodes.iter().zip(turned).flat_map(|(node, (found, given))| {
             (0..3).filter(|k| node.rotation_held[*k]).map(|k| (found[k] - given[k]).abs())

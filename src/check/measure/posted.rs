@@ -3,7 +3,7 @@
 use crate::check::measure::bodies::MeasuredBody;
 use crate::check::measure::bodies::surface::TouchedSurfaces;
 use crate::check::measure::elements::MeasuredElement;
-use crate::check::measure::middles::{ContactPoint, middles};
+use crate::check::measure::middles::{ContactPoint, following, middles};
 use crate::check::measure::numbers::{MeasuredVector, largest, padded};
 use crate::check::measure::obstacles::{MeasuredFrame, MeasuredObstacle};
 use crate::check::measure::solids::{MeasuredFace, SolidShares, pressed_surfaces};
@@ -30,6 +30,8 @@ pub(super) struct Posted {
     /// The faces of each surface that some stage presses.
     pub pressed: Vec<Vec<MeasuredFace>>,
     pub stages: Vec<PostedStage>,
+    /// The middles that follow the ends of their edges.
+    pub following: Vec<[usize; 3]>,
     /// Whether solids are bodies of revolution, whose radial forces balance around the axis and not in the plane.
     pub is_revolved: bool,
 }
@@ -186,6 +188,7 @@ impl Posted {
             contacts: model.contacts.iter().filter_map(contact).collect(),
             obstacles,
             moving: moving.iter().map(|name| MeasuredPivot::of(model, name)).collect(),
+            following: following(model),
             is_revolved: is_revolved(model),
             stages: model.stages.iter().zip(scales).map(stage).collect(),
             pressed: pressed.into_values().collect(),

@@ -54,7 +54,8 @@ pub(super) fn build_structure(
     let pressed = pressed_surfaces(model);
     add_pressure_faces(model, loaded_solids, length, &mut elements);
     let nodes = model.nodes.len() + pressed.len() + TurningObstacles::of(model).auxiliary_nodes();
-    supports.extend((model.nodes.len()..nodes).flat_map(|auxiliary| (0..dimension).map(move |k| (auxiliary, k))));
+    let held = (model.nodes.len()..nodes).chain(loaded_solids.basis.following());
+    supports.extend(held.flat_map(|node| (0..dimension).map(move |k| (node, k))));
     Structure::like(like, dimension, nodes, &supports, elements)
 }
 
@@ -254,7 +255,7 @@ fn place_and_gap(
     (length, curves): (f64, &Curves<'_>),
 ) -> (Vec<f64>, Option<f64>) {
     let place = &model.nodes[node];
-    let Some(ends) = basis.ends_of(node) else { return (place.clone(), None) };
+    let Some(ends) = basis.extrapolated_from(node) else { return (place.clone(), None) };
     let ends = ends.map(|end| &model.nodes[end]);
     let gap = |place: &[f64]| surface_at(model, contact, place, length, curves).1;
     let combined = extrapolated(gap(place), ends.map(|end| gap(end)));

@@ -11,7 +11,7 @@ use crate::model::request::{
 };
 use indexmap::{IndexMap, IndexSet};
 use std::cell::{Cell, OnceCell, RefCell};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 /// Puts nodes in place of names of sets and surfaces.
@@ -129,6 +129,8 @@ struct Groups<'a> {
     elements: &'a [Element],
     /// The places of named elements, where a set of elements is asked for.
     places: OnceCell<HashMap<&'a str, usize>>,
+    /// The names of middles of edges, where a surface touches another body.
+    middles: OnceCell<HashSet<&'a str>>,
     resolved: RefCell<HashMap<String, Rc<[String]>>>,
     /// How many more nodes names may stand for.
     left: Cell<usize>,
@@ -149,8 +151,20 @@ impl<'a> Groups<'a> {
         sets: &'a IndexMap<String, NamedSet>,
         elements: &'a [Element],
     ) -> Self {
-        let (places, resolved) = (OnceCell::new(), RefCell::default());
-        Self { surfaces, sets, elements, places, resolved, left: Cell::new(MAX_NAMED_NODES) }
+        let (places, middles, resolved) = (OnceCell::new(), OnceCell::new(), RefCell::default());
+        Self { surfaces, sets, elements, places, middles, resolved, left: Cell::new(MAX_NAMED_NODES) }
+    }
+
+    /// The middles of the edges of quadratic solids.
+    fn middles(&self) -> &HashSet<&'a str> {
+        self.middles.get_or_init(|| {
+            let of_element = |element: &'a Element| {
+                let count = element.solid().map_or(0, |(kind, _)| kind.edges_with_middle().len());
+                let nodes = element.nodes();
+                nodes[nodes.len().saturating_sub(count)..].iter().map(String::as_str)
+            };
+            self.elements.iter().flat_map(of_element).collect()
+        })
     }
 
     /// The nodes of a set or a surface, each once; `None` where there is neither.
@@ -313,7 +327,10 @@ impl<'a> Groups<'a> {
                         });
                         return (all, origins);
                     }
-                    all.extend(nodes.iter().map(|node| Contact { node: node.clone(), ..contact.clone() }));
+                    // Where bodies touch each other, middles of edges follow their ends.
+                    let follows = |node: &String| contact.against.is_some() && self.middles().contains(node.as_str());
+                    let touching = nodes.iter().filter(|node| !follows(node));
+                    all.extend(touching.map(|node| Contact { node: node.clone(), ..contact.clone() }));
                 }
                 Members::Mistaken => {}
             }

@@ -14,9 +14,10 @@ use crate::model::input::names::quoted;
 use crate::model::request::{Contact, ContactDiscretisation, Element, Model, PlaneCondition};
 use crate::model::solids::closed_surfaces::begin_away_from_contact;
 use crate::model::solids::faces::{FaceMatch, surface_faces};
+use crate::model::solids::middle_nodes::following_middles;
 use crate::resources::budget;
 use smallvec::SmallVec;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
 /// A penetration at the start of up to this part of a face's length is that of the mesh: round bodies whose meshes do not
@@ -37,6 +38,8 @@ pub(crate) struct ContactSurfaces<'a> {
     unit: f64,
     origin: Vector,
     surfaces: HashMap<&'a str, Result<TouchedSurface, String>>,
+    /// The middles of edges that follow the ends of these.
+    following: BTreeMap<usize, [usize; 2]>,
 }
 
 /// A surface that touches another.
@@ -101,7 +104,7 @@ impl<'a> ContactSurfaces<'a> {
             .collect();
         let first = model.nodes.values().next();
         let origin = first.map_or([0.0; 3], |place| [0, 1, 2].map(|k| place.get(k).copied().unwrap_or(0.0)));
-        let mut built = Self { model, unit, origin, surfaces: HashMap::new() };
+        let mut built = Self { model, unit, origin, surfaces: HashMap::new(), following: following_middles(model) };
         if !named.is_empty() {
             let all = model.surfaces.keys().zip(surface_faces(model));
             for (name, faces) in all.filter(|(name, _)| named.contains(name.as_str())) {
@@ -142,12 +145,8 @@ impl<'a> ContactSurfaces<'a> {
         let mut corners: Vec<SmallVec<[usize; 4]>> = Vec::with_capacity(faces.len());
         for face in faces {
             let FaceMatch::Face(face) = face else { return Err(NO_FACES.to_owned()) };
-            if face.nodes.len() > 4 {
-                let why = "the surface has quadratic faces; surfaces that touch each other have faces of three or four \
-                           nodes: mesh the body with tetrahedron4 or hexahedron8";
-                return Err(why.to_owned());
-            }
-            corners.push(SmallVec::from_slice(&face.nodes));
+            // The middles of quadratic faces follow the ends of their edges.
+            corners.push(SmallVec::from_slice(&face.nodes[..face.kind.corners()]));
         }
         SurfaceInSpace::new(&corners, |node| self.place(node)).map_err(|error| match &error {
             SurfaceInSpaceError::Branches([one, other]) => format!(
@@ -173,13 +172,8 @@ impl<'a> ContactSurfaces<'a> {
                             "surfaces of bodies of revolution do not touch each other in this version".to_owned()
                         );
                     }
-                    let [first, last] = face.nodes[..] else {
-                        return Err(
-                            "the surface has faces of three nodes; surfaces that touch each other have faces of two: \
-                                    mesh the body with triangle3 or quadrilateral4"
-                                .to_owned(),
-                        );
-                    };
+                    // A middle follows the ends of its edge.
+                    let [first, last, ..] = face.nodes[..] else { return Err(NO_FACES.to_owned()) };
                     // Solids have their faces with the outer side on the right.
                     lines.push([last, first]);
                 }
@@ -243,6 +237,16 @@ impl<'a> ContactSurfaces<'a> {
         // The whole surface is gone through several times.
         budget::spend(GONE_THROUGH * opposite.faces());
         let name = || quoted(&contact.node).to_string();
+        if let Some([a, b]) = self.following.get(&node) {
+            let why = format!(
+                "{} is the middle of an edge, which follows its ends {} and {} where bodies touch each other; leave its \
+                 contact out",
+                name(),
+                self.name(*a),
+                self.name(*b)
+            );
+            return Err(("node", why));
+        }
         if contact.touches_itself() {
             return self.contact_with_itself(contact, node, &opposite);
         }

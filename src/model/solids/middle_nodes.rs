@@ -1,18 +1,55 @@
-//! The middles of solids' edges whose contacts need the transformed basis of quadratic faces.
+//! The middles of solids' edges whose unknowns contacts transform.
 
-use crate::mechanics::structure::basis_transformation::BasisTransformation;
+use crate::mechanics::structure::basis_transformation::{BasisTransformation, MiddleUnknown, TransformedEdge};
 use crate::model::request::{Element, Model};
+use crate::model::solids::faces::{FaceMatch, SolidFace, surface_faces};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// The transformation of the unknowns at the middles of edges in space that touch an obstacle.
+/// The transformation of the unknowns at the middles of edges: of quadratic faces where bodies touch each other, which follow
+/// the ends of their edges, and of edges in space that touch an obstacle.
 ///
-/// A middle is transformed if both ends of its edge touch the obstacles that it touches and are held wherever it is, and
+/// Of the latter a middle is transformed if both ends of its edge touch the obstacles that it touches and are held wherever it is, and
 /// if nothing but quadratic solids asks for its displacement: no other element, no surface of a contact of bodies and no end
 /// of a stage. Linear in the size of the model.
 pub(crate) fn basis_transformation(model: &Model) -> BasisTransformation {
     let has_middles = |element: &Element| element.solid().is_some_and(|(kind, _)| !kind.edges_with_middle().is_empty());
-    if model.dimension != 3 || model.contacts.is_empty() || !model.elements.iter().any(has_middles) {
+    if model.contacts.is_empty() || !model.elements.iter().any(has_middles) {
         return BasisTransformation::default();
+    }
+    let follows = |ends: [usize; 2]| TransformedEdge { ends, unknown: MiddleUnknown::OffTheChord };
+    let mut edges: BTreeMap<usize, TransformedEdge> =
+        following_middles(model).into_iter().map(|(node, ends)| (node, follows(ends))).collect();
+    let touches = |ends: [usize; 2]| TransformedEdge { ends, unknown: MiddleUnknown::Extrapolated };
+    for (node, ends) in extrapolated_middles(model) {
+        edges.entry(node).or_insert(touches(ends));
+    }
+    BasisTransformation::new(edges)
+}
+
+/// The middles of quadratic faces of surfaces that touch other bodies, with the ends of their edges.
+pub(crate) fn following_middles(model: &Model) -> BTreeMap<usize, [usize; 2]> {
+    let bodies = model.contacts.iter().filter(|contact| contact.against.is_some());
+    let named: HashSet<&str> =
+        bodies.flat_map(|contact| [&contact.surface, &contact.against]).flatten().map(String::as_str).collect();
+    let mut found = BTreeMap::new();
+    if named.is_empty() {
+        return found;
+    }
+    let all = model.surfaces.keys().zip(surface_faces(model));
+    for face in all.filter(|(name, _)| named.contains(name.as_str())).flat_map(|(_, faces)| faces) {
+        let FaceMatch::Face(SolidFace { kind, nodes, .. }) = face else { continue };
+        for (middle, ends) in nodes[kind.corners()..].iter().zip(kind.edges_with_middle()) {
+            let [one, other] = ends.map(|end| nodes[end]);
+            found.insert(*middle, [one.min(other), one.max(other)]);
+        }
+    }
+    found
+}
+
+/// The middles in space that touch an obstacle past themselves, with the ends of their edges.
+fn extrapolated_middles(model: &Model) -> BTreeMap<usize, [usize; 2]> {
+    if model.dimension != 3 {
+        return BTreeMap::new();
     }
     let mut touched: HashMap<&str, HashSet<&str>> = HashMap::new();
     for contact in model.contacts.iter().filter(|contact| contact.against.is_none()) {
@@ -43,11 +80,11 @@ pub(crate) fn basis_transformation(model: &Model) -> BasisTransformation {
         }
     }
     ends.retain(|node, _| model.nodes.get_index(*node).is_some_and(|(name, _)| !refused.contains(name.as_str())));
-    BasisTransformation::new(ends)
+    ends
 }
 
 /// Whether an end of an edge is held wherever its middle is.
-fn is_held(model: &Model, end: &str, middle: &str) -> bool {
+pub(crate) fn is_held(model: &Model, end: &str, middle: &str) -> bool {
     let Some(of_middle) = model.supports.get(middle) else { return true };
     let of_end = model.supports.get(end);
     of_middle.iter().all(|component| of_end.is_some_and(|of_end| of_end.contains(component)))

@@ -9,6 +9,7 @@ mod crossed_bars;
 mod hertz;
 mod hooks;
 mod itself;
+mod quadratic_faces;
 mod random_pairs;
 mod spheres;
 mod tube;

@@ -6,6 +6,6 @@ mod blocks;
 mod homogeneous;
 mod invariance;
 mod known_contacts;
-mod meshes;
+pub mod meshes;
 mod pressure;
 mod rivlin;

@@ -1,7 +1,7 @@
 //! The surfaces that bodies touch, as posted: their faces in order, with the coordinates along them.
 
 use crate::check::measure::numbers::{MeasuredVector, padded};
-use crate::model::request::{Element, Model, Surface};
+use crate::model::request::{Element, Model, SolidKind, Surface};
 use crate::model::solids::closed_surfaces::begin_away_from_contact;
 use crate::model::solids::faces::{FaceMatch, surface_faces};
 use std::collections::{HashMap, HashSet};
@@ -55,14 +55,28 @@ impl<'a> TouchedSurfaces<'a> {
         // A solid has its corners counter-clockwise: seen along its boundary, the free side is on the right.
         let solids = model.elements.iter().filter_map(Element::solid);
         let edges: HashSet<(&str, &str)> = solids
-            .flat_map(|(_, solid)| {
-                let next = solid.nodes.iter().cycle().skip(1);
-                solid.nodes.iter().zip(next).map(|(one, other)| (one.as_str(), other.as_str()))
+            .flat_map(|(kind, solid)| {
+                let corners = if matches!(kind, SolidKind::Triangle3 | SolidKind::Triangle6) { 3 } else { 4 };
+                let corners = &solid.nodes[..corners.min(solid.nodes.len())];
+                let next = corners.iter().cycle().skip(1);
+                corners.iter().zip(next).map(|(one, other)| (one.as_str(), other.as_str()))
             })
             .collect();
         let number = |name: &String| model.nodes.get_index_of(name);
-        let oriented = |face: &Vec<String>| {
-            let [first, last] = face.as_slice() else { return None };
+        // The middle of an edge follows its ends.
+        let corners_of = |face: &'a Vec<String>| match face.as_slice() {
+            [first, last] => Some([first, last]),
+            [a, b, c] => {
+                let is_edge = |[one, other]: &[&String; 2]| {
+                    let names = (one.as_str(), other.as_str());
+                    edges.contains(&names) || edges.contains(&(names.1, names.0))
+                };
+                [[a, b], [b, c], [a, c]].into_iter().find(is_edge)
+            }
+            _ => None,
+        };
+        let oriented = |face: &'a Vec<String>| {
+            let [first, last] = corners_of(face)?;
             let numbers = [number(first)?, number(last)?];
             let is_on_the_right = edges.contains(&(first.as_str(), last.as_str()));
             Some(if is_on_the_right { [numbers[1], numbers[0]] } else { numbers })
@@ -71,7 +85,7 @@ impl<'a> TouchedSurfaces<'a> {
         let places: Arc<[MeasuredVector]> = model.nodes.values().map(|place| padded(place)).collect();
         let of_itself: HashSet<&str> =
             bodies().filter(|one| one.touches_itself()).filter_map(|one| one.surface.as_deref()).collect();
-        let in_order_of_parts = |(name, surface): (&'a String, &Surface)| {
+        let in_order_of_parts = |(name, surface): (&'a String, &'a Surface)| {
             let lines: Vec<[usize; 2]> = surface.faces.iter().filter_map(oriented).collect();
             if !of_itself.contains(name.as_str()) {
                 return (name.as_str(), lines);
@@ -88,7 +102,10 @@ impl<'a> TouchedSurfaces<'a> {
             let all = model.surfaces.keys().zip(surface_faces(model));
             for (name, faces) in all.filter(|(name, _)| named.contains(name.as_str())) {
                 let nodes = faces.into_iter().filter_map(|face| match face {
-                    FaceMatch::Face(face) => Some(face.nodes),
+                    FaceMatch::Face(face) => {
+                        let corners = if face.nodes.len() % 3 == 0 { 3 } else { 4 };
+                        Some(face.nodes[..corners].to_vec())
+                    }
                     _ => None,
                 });
                 faces_in_space.insert(name.as_str(), nodes.collect());

@@ -108,9 +108,10 @@ impl AnySolid {
 
     /// Adds the element at the end of a list, over the unknowns of a basis.
     pub fn add_to(self, list: &mut ElementList, basis: &BasisTransformation) {
+        let dimension = of_any!(&self, element => element.kind().dimension());
         of_any!(self, element => {
             let edges = basis.edges_among(element.nodes());
-            push_transformed(list, element, &edges);
+            push_transformed(list, element, &edges, dimension);
         });
     }
 

@@ -125,7 +125,7 @@ pub fn push_pressure_face(
     macro_rules! push {
         ($count:literal, $dimension:literal) => {{
             let face = PressureFace::<$count, $dimension> { nodes, positions: leading(positions), idealisation };
-            push_transformed(list, face, &edges)
+            push_transformed(list, face, &edges, $dimension)
         }};
     }
     match kind {

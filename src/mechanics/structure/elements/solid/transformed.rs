@@ -6,7 +6,7 @@ use crate::mechanics::structure::element_list::ElementList;
 use crate::mechanics::structure::elements::{FiniteElement, Resultants};
 use smallvec::SmallVec;
 
-/// An element of nodes with three translations, some of which are middles with transformed unknowns.
+/// An element some of whose nodes are middles with transformed unknowns.
 #[derive(Debug, Clone)]
 struct TransformedElement<E> {
     element: E,
@@ -71,8 +71,9 @@ impl<E: FiniteElement> FiniteElement for TransformedElement<E> {
     }
 }
 
-/// Adds an element at the end of a list, over transformed unknowns where `edges`, by the places of its nodes, has any.
-pub fn push_transformed<E>(list: &mut ElementList, element: E, edges: &[EdgePlaces])
+/// Adds an element in so many dimensions at the end of a list, over transformed unknowns where `edges`, by the places of its
+/// nodes, has any.
+pub fn push_transformed<E>(list: &mut ElementList, element: E, edges: &[EdgePlaces], dimension: usize)
 where
     E: FiniteElement + Clone + 'static,
 {
@@ -81,17 +82,17 @@ where
         return;
     }
     let along = |axis: usize| {
-        let freedom = move |place: usize| 3 * place + axis;
-        edges.iter().map(move |edge| EdgePlaces { middle: freedom(edge.middle), ends: edge.ends.map(freedom) })
+        let freedom = move |place: usize| dimension * place + axis;
+        edges.iter().map(move |edge| EdgePlaces { middle: freedom(edge.middle), ends: edge.ends.map(freedom), ..*edge })
     };
-    let edges = (0..3).flat_map(along).collect();
+    let edges = (0..dimension).flat_map(along).collect();
     list.push(TransformedElement { element, edges });
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::structure::basis_transformation::BasisTransformation;
+    use crate::mechanics::structure::basis_transformation::{BasisTransformation, MiddleUnknown, TransformedEdge};
     use crate::mechanics::structure::elements::materials::ElasticModuli;
     use crate::mechanics::structure::elements::materials::neo_hookean::NeoHookean;
     use crate::mechanics::structure::elements::solid::any::{AnySolid, SolidData};
@@ -117,7 +118,12 @@ mod tests {
             mend: None,
         };
         let nodes: Vec<usize> = (0..10).collect();
-        let basis = BasisTransformation::new(BTreeMap::from([(4, [0, 1]), (5, [1, 2]), (6, [2, 0])]));
+        let edge = |ends, unknown| TransformedEdge { ends, unknown };
+        let basis = BasisTransformation::new(BTreeMap::from([
+            (4, edge([0, 1], MiddleUnknown::Extrapolated)),
+            (5, edge([1, 2], MiddleUnknown::Extrapolated)),
+            (6, edge([2, 0], MiddleUnknown::OffTheChord)),
+        ]));
         let mut list = ElementList::default();
         AnySolid::new(&data, &nodes, &places).expect("a solid").add_to(&mut list, &basis);
         let element = list.iter().next().expect("an element");

@@ -29,6 +29,25 @@ pub enum FaceKind {
 }
 
 impl FaceKind {
+    /// Number of corners, which are the first nodes; middles of edges follow.
+    pub fn corners(self) -> usize {
+        match self {
+            Self::Segment2 | Self::Segment3 => 2,
+            Self::Triangle3 | Self::Triangle6 => 3,
+            Self::Quadrilateral4 | Self::Quadrilateral8 => 4,
+        }
+    }
+
+    /// The ends of the edge of each middle, in the order of these nodes.
+    pub fn edges_with_middle(self) -> &'static [[usize; 2]] {
+        match self {
+            Self::Segment2 | Self::Triangle3 | Self::Quadrilateral4 => &[],
+            Self::Segment3 => &[[0, 1]],
+            Self::Triangle6 => SolidKind::Triangle6.edges_with_middle(),
+            Self::Quadrilateral8 => SolidKind::Quadrilateral8.edges_with_middle(),
+        }
+    }
+
     /// Number of nodes.
     pub fn nodes(self) -> usize {
         match self {

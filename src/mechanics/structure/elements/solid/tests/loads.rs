@@ -1,7 +1,7 @@
 //! Loads against totals, closed forms and difference quotients; faces and their orientation.
 
 use super::meshes::{STRAIN, STRESS, distorted, element, neo_hookean};
-use crate::mechanics::structure::basis_transformation::BasisTransformation;
+use crate::mechanics::structure::basis_transformation::{BasisTransformation, MiddleUnknown, TransformedEdge};
 use crate::mechanics::structure::elements::solid::SolidElement;
 use crate::mechanics::structure::elements::solid::loads::{
     body_force, dead_traction, pressure_force, write_pressure_stiffness,
@@ -183,7 +183,9 @@ fn the_stiffness_of_a_pressure_is_its_derivative() {
 /// An even traction pulls at the corners of a square of 8 nodes; in the transformed basis it pushes everywhere.
 #[test]
 fn an_even_traction_pushes_everywhere_in_the_transformed_basis() {
-    let basis = BasisTransformation::new(BTreeMap::from([(4, [0, 1]), (5, [1, 2]), (6, [2, 3]), (7, [0, 3])]));
+    let edge = |(place, ends)| (place, TransformedEdge { ends, unknown: MiddleUnknown::Extrapolated });
+    let edges = [(4, [0, 1]), (5, [1, 2]), (6, [2, 3]), (7, [0, 3])].map(edge);
+    let basis = BasisTransformation::new(BTreeMap::from(edges));
     // A constant traction on a square of 8 nodes: -1/12 at the corners, 1/3 in the middle of the edges.
     let square = distorted(SolidKind::Quadrilateral8, 1).lattice;
     let order = distorted(SolidKind::Quadrilateral8, 1).elements[0].clone();

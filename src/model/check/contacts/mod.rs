@@ -1,5 +1,7 @@
 //! Checks contacts: their nodes and obstacles, and the gaps at the start.
 
+mod following_middles;
+
 use std::collections::{HashMap, HashSet};
 
 use crate::model::check::numbers::{self, dot};
@@ -40,6 +42,7 @@ pub(super) fn contacts(scope: &Scope, curves: &Curves, mistakes: &mut Mistakes) 
         });
         return;
     }
+    following_middles::asked_for_by_nothing(scope, mistakes);
     let surfaces = ContactSurfaces::new(scope.model, 1.0);
     let (mut touching, mut pairs) = (HashSet::new(), HashSet::new());
     for (index, contact) in scope.model.contacts.iter().enumerate() {
