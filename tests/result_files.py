@@ -332,7 +332,7 @@ def pressed_block():
 
 
 def check_contact_pressure(program, folder):
-    """An even traction is an even contact pressure."""
+    """An even traction is an even contact pressure and an even strain."""
     model = folder / "pressed.json"
     model.write_text(json.dumps(pressed_block()))
     solve(program, model, folder / "pressed.pvd")
@@ -342,6 +342,17 @@ def check_contact_pressure(program, folder):
     Check.equal("nodes with a contact pressure", len(closed), 13)
     if abs(closed / 0.06 - 1.0).max() > 1e-9:
         raise SystemExit(f"contact pressures of an even traction of 0.06: {closed}")
+    strain = vtk_to_numpy(read_piece(last).GetCellData().GetArray("strain"))
+    solve(program, model, folder / "pressed.ndjson")
+    moved = rows_of(folder / "pressed.ndjson")[-1]["displacements"]
+    # Homogeneous: of Green and Lagrange by the sides of the block, (l² - 1)/2.
+    sides = [(1 + (moved["n4_2_2"][0] - moved["n0_2_2"][0]) / 2), 1 + moved["n0_2_2"][1] - moved["n0_0_2"][1],
+             1 + moved["n0_0_2"][2]]
+    expected = [(side ** 2 - 1) / 2 for side in sides] + [0, 0, 0]
+    if abs(strain - expected).max() > 1e-12:
+        raise SystemExit(f"strains {strain}, expected {expected}")
+    Check.compared += strain.size
+    print(f"pressed block: strain of Green and Lagrange within {abs(strain - expected).max():.1e}")
     print(f"pressed block: contact pressure 0.06 within {abs(closed / 0.06 - 1.0).max():.1e} at {len(closed)} nodes")
 
 

@@ -103,12 +103,15 @@ pub(crate) fn support_reactions(scene: &Scene, row: &RowSource<'_>) -> NodalValu
 pub(crate) fn applied_forces(scene: &Scene, row: &RowSource<'_>) -> SpaceVector {
     let (structure, loading) = (row.loading.structure, row.loading);
     let following = following_loads::forces(structure, &row.state.displacement);
+    let force = |freedom: usize| {
+        let dead = row.state.load * loading.pattern.forces[freedom] + loading.held.forces[freedom];
+        dead + following.get(freedom).copied().unwrap_or(0.0)
+    };
+    let mut forces: Vec<f64> = (0..structure.freedoms()).map(force).collect();
+    scene.basis.forces_on_nodes(&structure.numbering, &mut forces);
     let mut sum = [0.0; 3];
     for node in 0..structure.numbering.nodes() {
-        for (sum, freedom) in sum.iter_mut().zip(structure.translations_of(node)) {
-            *sum += row.state.load * loading.pattern.forces[freedom] + loading.held.forces[freedom];
-            *sum += following.get(freedom).copied().unwrap_or(0.0);
-        }
+        sum.iter_mut().zip(structure.translations_of(node)).for_each(|(sum, freedom)| *sum += forces[freedom]);
     }
     sum[..structure.dimension].iter().map(|value| value * scene.plan().force_scale).collect()
 }

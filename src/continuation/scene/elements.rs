@@ -6,7 +6,7 @@ use crate::mechanics::structure::elements::bar::Bar;
 use crate::mechanics::structure::elements::beam::Beam;
 use crate::mechanics::structure::elements::beam::segment::SectionStiffness;
 use crate::mechanics::structure::elements::rotational_spring::RotationalSpring;
-use crate::mechanics::structure::elements::solid::any::{AnySolid, SolidData};
+use crate::mechanics::structure::elements::solid::any::AnySolid;
 use crate::mechanics::structure::elements::space_beam::SpaceBeam;
 use crate::mechanics::structure::elements::space_beam::segment::SpaceSectionStiffness;
 use crate::mechanics::structure::elements::spring::Spring;
@@ -56,14 +56,8 @@ impl<'a> ElementBuilder<'a> {
 
     /// A solid; `None` where it is none, which a checked model has not.
     pub fn solid(&self, element: &Element) -> Option<AnySolid> {
-        let (kind, solid) = element.solid()?;
-        let stress = self.force / self.length / self.length;
-        let material = data::material(self.model.materials.get(&solid.material)?, stress).ok()?;
-        let idealisation = data::idealisation(solid, self.model.dimension, self.length);
-        let places: Vec<&[f64]> = solid.nodes.iter().map(|node| self.model.nodes[node].as_slice()).collect();
-        let nodes: Vec<usize> = solid.nodes.iter().map(|node| self.numbers[node.as_str()]).collect();
-        let data = SolidData { kind, idealisation, material, mend: solid.locking };
-        AnySolid::new(&data, &nodes, &data::positions(&places, idealisation, self.length)).ok()
+        let nodes: Vec<usize> = element.nodes().iter().map(|node| self.numbers[node.as_str()]).collect();
+        data::solid(self.model, element, &nodes, (self.length, self.force))
     }
 
     /// From one node to another. A difference of the places as given: a place far from the origin causes no loss of

@@ -20,6 +20,7 @@ mod tests;
 use crate::model::input::json::Json;
 use crate::model::input::mistakes::Mistakes;
 use crate::model::request::curve::CurveSettings;
+use crate::model::solids::middle_nodes::straighten;
 use crate::model::{Analysis, FollowRequest, InputError, InputErrors, JobRequest, Model, StudyRequest};
 use reader::{Fields, Input, Object};
 
@@ -134,7 +135,8 @@ fn job_request(input: &Input, mistakes: &mut Mistakes) -> Option<JobRequest> {
 }
 
 /// The request with the parts of its mesh, and with the nodes of sets and surfaces in place of their names, `@name`: in
-/// supports, loads, contacts and in what is recorded. Requests read from JSON are expanded already.
+/// supports, loads, contacts and in what is recorded. Where bodies of quadratic solids touch each other the middles of the
+/// edges of their surfaces are put on the chords. Requests read from JSON are expanded already.
 ///
 /// # Errors
 ///
@@ -155,10 +157,12 @@ pub fn expanded(mut request: JobRequest) -> Result<JobRequest, InputErrors> {
     mistakes.into_result().map(|()| request)
 }
 
-/// Puts the parts of a mesh, then the nodes of sets and surfaces, in place of their names.
+/// Puts the parts of a mesh, then the nodes of sets and surfaces, in place of their names; and the middles of edges that follow
+/// their ends onto the chords between these.
 fn expand(model: &mut Model, analysis: &mut Analysis, mistakes: &mut Mistakes) {
     if meshes::expand(model, mistakes) {
         sets::expand(model, analysis, mistakes);
+        straighten(model);
     }
 }
 

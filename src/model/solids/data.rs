@@ -5,6 +5,7 @@ use crate::mechanics::structure::elements::materials::mooney_rivlin::MooneyRivli
 use crate::mechanics::structure::elements::materials::neo_hookean::NeoHookean;
 use crate::mechanics::structure::elements::materials::saint_venant_kirchhoff::SaintVenantKirchhoff;
 use crate::mechanics::structure::elements::materials::{self, ElasticModuli, MaterialError};
+use crate::mechanics::structure::elements::solid::any::{AnySolid, SolidData};
 use crate::mechanics::structure::elements::solid::shapes::faces::FaceKind;
 use crate::mechanics::structure::elements::solid::shapes::kind::Idealisation;
 use crate::model::request::{ElasticConstants, Element, Material, Model, PlaneCondition, Solid};
@@ -37,6 +38,21 @@ pub(crate) fn idealisation(solid: &Solid, dimension: usize, unit: f64) -> Ideali
         Some(PlaneCondition::Axisymmetric) => Idealisation::Axisymmetric,
         Some(PlaneCondition::Strain) | None => Idealisation::PlaneStrain { thickness },
     }
+}
+
+/// A solid of the nodes with these numbers, with lengths and forces over the units; `None` where the element makes none.
+pub(crate) fn solid(
+    model: &Model,
+    element: &Element,
+    nodes: &[usize],
+    (length, force): (f64, f64),
+) -> Option<AnySolid> {
+    let (kind, solid) = element.solid()?;
+    let material = material(model.materials.get(&solid.material)?, force / length / length).ok()?;
+    let idealisation = idealisation(solid, model.dimension, length);
+    let places: Option<Vec<&[f64]>> = solid.nodes.iter().map(|node| model.nodes.get(node).map(Vec::as_slice)).collect();
+    let data = SolidData { kind, idealisation, material, mend: solid.locking };
+    AnySolid::new(&data, nodes, &positions(&places?, idealisation, length)).ok()
 }
 
 /// Places of nodes over `unit`, from the first one; of a body of revolution the radius stays what it is. Differences of the

@@ -46,6 +46,22 @@ pub(crate) fn following_middles(model: &Model) -> BTreeMap<usize, [usize; 2]> {
     found
 }
 
+/// Puts the middles that follow the ends of their edges onto the chords between these: a body that turns then has them there
+/// without strain.
+pub(crate) fn straighten(model: &mut Model) {
+    for (middle, ends) in following_middles(model) {
+        let [a, b] = ends.map(|end| model.nodes.get_index(end).map(|(_, place)| place.clone()).unwrap_or_default());
+        if let Some((_, place)) = model.nodes.get_index_mut(middle) {
+            place.iter_mut().zip(a.iter().zip(&b)).for_each(|(own, (a, b))| *own = chord_middle(*a, *b));
+        }
+    }
+}
+
+/// The middle between two coordinates, without overflow.
+pub(crate) fn chord_middle(a: f64, b: f64) -> f64 {
+    0.5 * a + 0.5 * b
+}
+
 /// The middles in space that touch an obstacle past themselves, with the ends of their edges.
 fn extrapolated_middles(model: &Model) -> BTreeMap<usize, [usize; 2]> {
     if model.dimension != 3 {

@@ -11,7 +11,7 @@ use itertools::Itertools;
 use std::collections::{HashMap, HashSet};
 
 /// For the number of a node and the name of what it touches the undeformed area `∫ N dA` over the faces of solids all of
-/// whose nodes touch it, by the functions of the basis that contacts are solved in; of bodies of revolution around the
+/// whose nodes touch it (of bodies that touch each other, all corners), by the functions of the basis that contacts are solved in; of bodies of revolution around the
 /// axis. A node whose function has no positive integral has none. Linear in the size of the model.
 pub(super) fn contact_areas(model: &Model) -> HashMap<(usize, &str), f64> {
     let mut touched: HashMap<usize, HashSet<&str>> = HashMap::new();
@@ -22,7 +22,7 @@ pub(super) fn contact_areas(model: &Model) -> HashMap<(usize, &str), f64> {
     }
     let basis = basis_transformation(model);
     let mut areas: HashMap<(usize, &str), f64> = HashMap::new();
-    for (face, counterparts) in touching_faces(model, &touched) {
+    for (face, counterparts) in touching_faces(model, &touched, &basis.following().collect()) {
         let Some(face) = data::loaded_face(model, &FaceMatch::Face(face), 1.0) else { continue };
         let mut own = vec![0.0; face.nodes.len()];
         let unit = [1.0, 0.0, 0.0];
@@ -31,7 +31,7 @@ pub(super) fn contact_areas(model: &Model) -> HashMap<(usize, &str), f64> {
         });
         basis.edges_among(&face.nodes).iter().for_each(|edge| edge.distribute(&mut own));
         for counterpart in counterparts {
-            for (node, area) in face.nodes.iter().zip(&own) {
+            for (node, area) in face.nodes.iter().zip(&own).filter(|(node, _)| touched.contains_key(node)) {
                 *areas.entry((*node, counterpart)).or_default() += area;
             }
         }
@@ -44,6 +44,7 @@ pub(super) fn contact_areas(model: &Model) -> HashMap<(usize, &str), f64> {
 fn touching_faces<'a>(
     model: &Model,
     touched: &HashMap<usize, HashSet<&'a str>>,
+    following: &HashSet<usize>,
 ) -> impl Iterator<Item = (SolidFace, Vec<&'a str>)> {
     let mut found: IndexMap<Vec<usize>, Option<(SolidFace, Vec<&'a str>)>> = IndexMap::new();
     for (element, (kind, solid)) in
@@ -54,7 +55,8 @@ fn touching_faces<'a>(
         for face in faces {
             let nodes: Option<Vec<usize>> = face.iter().map(|place| *numbers.get(*place)?).collect();
             let Some(nodes) = nodes else { continue };
-            let mut all = nodes.iter().map(|node| touched.get(node));
+            // Middles that follow their ends touch through these.
+            let mut all = nodes.iter().filter(|node| !following.contains(node)).map(|node| touched.get(node));
             let Some(Some(first)) = all.next() else { continue };
             let Some(others) = all.collect::<Option<Vec<_>>>() else { continue };
             let together = first.iter().filter(|name| others.iter().all(|other| other.contains(*name)));

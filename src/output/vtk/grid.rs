@@ -5,6 +5,7 @@ use crate::model::request::recorded_forces::{recorded_elements, recorded_support
 use crate::model::request::{Element, Record, SolidKind, Units};
 use crate::output::vtk::arrays::{DataArray, text_array};
 use crate::output::vtk::contact_areas::contact_areas;
+use crate::output::vtk::strains::StrainedSolids;
 use std::collections::HashMap;
 
 /// Types of cells: a point, for a spring to the ground, a line, and a line through several points.
@@ -46,7 +47,8 @@ pub struct Grid {
     pub(super) has_bar_forces: bool,
     pub(super) has_spring_forces: bool,
     pub(super) has_beam_forces: bool,
-    pub(super) has_stresses: bool,
+    /// The solids whose stresses are recorded; none where none are.
+    pub(super) strained: Option<StrainedSolids>,
     /// The areas that contacts stand for: for the place of a node the names of what it touches, each with the area. None where
     /// no contact is recorded.
     pub(super) contact_areas: HashMap<usize, Vec<(String, f64)>>,
@@ -117,7 +119,7 @@ impl Grid {
             has_bar_forces: has(|element| matches!(element, Element::Bar { .. })),
             has_spring_forces: has(|element| matches!(element, Element::Spring { .. })),
             has_beam_forces: has(|element| matches!(element, Element::Beam { .. })),
-            has_stresses: has(|element| element.solid().is_some()),
+            strained: has(|element| element.solid().is_some()).then(|| StrainedSolids::of(request)),
             place_of_node,
             units: model.units.clone().unwrap_or_default(),
             branch: branch.into(),

@@ -9,6 +9,7 @@ pub mod collection;
 mod contact_areas;
 pub mod grid;
 pub mod piece;
+mod strains;
 
 pub use collection::Collection;
 pub use grid::Grid;

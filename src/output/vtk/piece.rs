@@ -208,8 +208,10 @@ impl Grid {
         if self.has_spring_forces {
             arrays.push(DataArray::numbers("spring_force", 3, &forces));
         }
-        if self.has_stresses {
+        if let Some(strained) = &self.strained {
             arrays.extend(self.stress_arrays(increment));
+            let strains = strained.strains(self.number_of_elements, &self.place_of_node, &increment.displacements);
+            arrays.push(DataArray::numbers("strain", 6, &strains));
         }
         arrays
     }

@@ -1,6 +1,6 @@
 //! Bodies of quadratic solids that touch each other: patch tests through meshes that do not match, full slip, what is refused.
 
-use crate::common::paths::{close, request, trace};
+use crate::common::paths::{close, judged, request, trace};
 use crate::solids::meshes::{Mesh, hold};
 use arcslip::result::increment::Status;
 use arcslip::result::stop_reason::StopReason;
@@ -146,6 +146,62 @@ fn a_block_of_quadratic_solids_slips_at_the_limit_of_friction() {
         println!("{what}: {} increments, {} contacts, pulled by {pulled}", increments.len(), last.contacts.len());
         assert!(last.contacts.iter().all(|contact| contact.status == Status::Slip), "{what}");
         close(pulled, 0.3, 1e-10, &what);
+    }
+}
+
+/// Edges that are drawn round become chords: weighed down or turned, bodies are on the measure, and a turn by itself
+/// strains nothing.
+#[test]
+fn edges_that_are_drawn_round_become_chords() {
+    for kinds in [["quadrilateral8", "triangle6"], ["hexahedron20", "tetrahedron10"]] {
+        let mut model = blocks(kinds, [2, 3], 0.0, 0.2, false);
+        let dimension = model["dimension"].as_u64().expect("a dimension") as usize;
+        let up = dimension - 1;
+        let nodes = model["nodes"].as_object().expect("nodes").clone();
+        let mut turned = serde_json::Map::new();
+        for (name, place) in &nodes {
+            let mut place: Vec<f64> = place.as_array().expect("a place").iter().filter_map(Value::as_f64).collect();
+            let is_touching = place[up] == 1.0;
+            let is_middle =
+                name[1..].split('_').any(|number| number.parse().is_ok_and(|number: usize| number % 2 == 1));
+            if is_touching && is_middle {
+                place[up] += 0.05;
+            }
+            if name.starts_with('u') && place[up] == 2.0 {
+                // By a tenth about the far edge.
+                let (x, height) = (place[0] - 1.0, place[up] - 1.0);
+                let (sine, cosine) = 0.1_f64.sin_cos();
+                let mut motion = vec![0.0; dimension];
+                motion[0] = x * cosine + height * sine - x;
+                motion[up] = height * cosine - x * sine - height;
+                turned.insert(name.clone(), json!(motion));
+                model["supports"][name] = json!(&["x", "y", "z"][..dimension]);
+            } else if name.starts_with('u') {
+                model["supports"].as_object_mut().expect("supports").remove(name);
+            }
+            model["nodes"][name] = json!(place);
+        }
+        let mut weight = vec![0.0; dimension];
+        weight[up] = -1.0;
+        model["materials"]["matter"]["kind"] = json!("neo_hookean");
+        let what = format!("{kinds:?}");
+        for stages in [
+            json!([
+                {"name": "weight", "body_forces": {"matter": weight}, "until": {"load_above": 1}}
+            ]),
+            json!([{"name": "turn", "displacements": turned, "until": {"load_above": 1}}]),
+        ] {
+            model["stages"] = stages;
+            let path = judged(&request(&json!({"model": model}).to_string()));
+            assert_eq!(path.report.stop_reason, StopReason::StagesCompleted, "{what}: {:?}", path.report);
+            for (increment, errors) in path.increments.iter().zip(&path.errors) {
+                assert!(errors.largest_of_state() < 1e-10, "{what}, increment {}: {errors:?}", increment.index);
+            }
+            let last = path.increments.last().expect("an increment");
+            if &*last.stage == "turn" {
+                close(last.energy.strain, 0.0, 1e-12, &what);
+            }
+        }
     }
 }
 

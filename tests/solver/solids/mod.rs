@@ -8,4 +8,5 @@ mod invariance;
 mod known_contacts;
 pub mod meshes;
 mod pressure;
+mod random_quadratic;
 mod rivlin;

@@ -26,7 +26,7 @@ use std::f64::consts::TAU;
 const ROUNDINGS: f64 = 64.0;
 
 /// Poisson's ratio above which quadratic elements have a mean dilatation unless they are told otherwise.
-const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
+const NEARLY_INCOMPRESSIBLE: f64 = 0.45 + 1e-12;
 
 /// A vector of two or three components; a missing one is 0.
 fn padded(values: &[f64]) -> Vector3<f64> {

@@ -4,11 +4,11 @@
 use crate::model::check::scope::Scope;
 use crate::model::input::mistakes::Mistakes;
 use crate::model::input::names::quoted;
-use crate::model::request::Stage;
-use crate::model::solids::middle_nodes::{following_middles, is_held};
+use crate::model::request::{Model, Stage};
+use crate::model::solids::middle_nodes::{chord_middle, following_middles, is_held};
 use std::collections::HashMap;
 
-/// Difference of prescribed displacements, relative to the largest, up to which they are equal.
+/// Difference of prescribed displacements or coordinates, relative to the largest, up to which they are equal.
 const ALIKE: f64 = 1e-12;
 
 /// A middle with the ends of its edge, by names.
@@ -24,6 +24,17 @@ impl FollowingMiddle<'_> {
             "{} is the middle of an edge of bodies that touch each other, and follows the ends {a} and {b}",
             quoted(self.middle)
         )
+    }
+
+    /// Whether the middle is not where the chord between its ends has its own.
+    fn is_off_its_chord(&self, model: &Model) -> bool {
+        let place = |node: &str| model.nodes.get(node).map_or(&[][..], Vec::as_slice);
+        let [a, b] = self.ends.map(place);
+        let largest = a.iter().chain(b).fold(0.0_f64, |most, value| most.max(value.abs()));
+        place(self.middle)
+            .iter()
+            .zip(a.iter().zip(b))
+            .any(|(own, (a, b))| (own - chord_middle(*a, *b)).abs() > ALIKE * largest)
     }
 
     /// Whether a stage prescribes other displacements of the middle than the mean of its ends.
@@ -70,6 +81,11 @@ pub(super) fn asked_for_by_nothing(scope: &Scope, mistakes: &mut Mistakes) {
     in_order.sort_unstable_by_key(|one| one.middle);
     let (at_supports, at_stages) = (scope.at.member("supports"), scope.at.member("stages"));
     for one in in_order {
+        if one.is_off_its_chord(model) {
+            mistakes.add(&scope.at.member("nodes").member(one.middle), || {
+                format!("{}; on the chord between them is expected, where `expanded` puts it", one.follows())
+            });
+        }
         if !one.ends.iter().all(|end| is_held(model, end, one.middle)) {
             mistakes.add(&at_supports.member(one.middle), || {
                 format!("{}; hold these in the same components, or leave the support out", one.follows())

@@ -4,6 +4,7 @@ use crate::mechanics::structure::basis_transformation::BasisTransformation;
 use crate::mechanics::structure::element_list::ElementList;
 use crate::mechanics::structure::elements::FiniteElement;
 use crate::mechanics::structure::elements::materials::ElasticMaterial;
+use crate::mechanics::structure::elements::materials::tensor::Tensor2;
 use crate::mechanics::structure::elements::solid::loads::{body_force, dead_traction};
 use crate::mechanics::structure::elements::solid::shapes::faces::FaceKind;
 use crate::mechanics::structure::elements::solid::shapes::geometry::NodalPositions;
@@ -118,6 +119,11 @@ impl AnySolid {
     /// Undeformed volume: of the thickness, or the whole revolution.
     pub fn volume(&self) -> f64 {
         of_any!(self, element => element.volume())
+    }
+
+    /// The mean strain: see [`SolidElement::mean_strain`].
+    pub fn mean_strain(&self, displacement: &[f64]) -> Tensor2 {
+        of_any!(self, element => element.mean_strain(displacement))
     }
 
     /// Calls `each` with the place of each of the element's nodes and its part of a force per undeformed volume.

@@ -229,11 +229,21 @@ impl<const N: usize, const D: usize> SolidElement<N, D> {
 
     /// The mean Cauchy stress over the deformed volume; 0 where the element is turned inside out.
     pub fn mean_stress(&self, displacement: &[f64]) -> Tensor2 {
+        self.mean(displacement, |point| &point.stress)
+    }
+
+    /// The mean strain, of Green and Lagrange or linear where strains count as small, over the same volume; 0 where the
+    /// element is turned inside out. Dimensionless.
+    pub fn mean_strain(&self, displacement: &[f64]) -> Tensor2 {
+        self.mean(displacement, |point| &point.strain)
+    }
+
+    fn mean(&self, displacement: &[f64], of: impl Fn(&PointStress<D>) -> &Tensor2) -> Tensor2 {
         let (mut volume, mut mean) = (0.0, [[0.0; 3]; 3]);
         self.each_stress(displacement, &mut |point| {
             volume += point.volume;
-            let entries = mean.iter_mut().flatten().zip(point.stress.iter().flatten());
-            entries.for_each(|(mean, stress): (&mut f64, &f64)| *mean += point.volume * stress);
+            let entries = mean.iter_mut().flatten().zip(of(&point).iter().flatten());
+            entries.for_each(|(mean, value): (&mut f64, &f64)| *mean += point.volume * value);
         });
         if volume > 0.0 { mean.map(|row| row.map(|value| value / volume)) } else { mean }
     }

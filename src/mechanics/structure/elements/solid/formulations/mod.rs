@@ -36,6 +36,8 @@ pub struct PointStress<const D: usize> {
     pub volume: f64,
     /// Cauchy stress.
     pub stress: Tensor2,
+    /// Strain of Green and Lagrange; the linear one where strains count as small. Dimensionless.
+    pub strain: Tensor2,
 }
 
 /// How energy, forces and tangent follow from the displacements of `N` nodes in `D` dimensions, with `S` slots.
@@ -93,13 +95,15 @@ impl<const N: usize, const D: usize> Body<N, D> {
         displacement_gradient: &Tensor2,
         stress: &Tensor2,
     ) -> PointStress<D> {
+        let linear = scaled(0.5, &sum(displacement_gradient, 1.0, &transpose(displacement_gradient)));
         if self.material().is_linear() {
-            return PointStress { position, volume, stress: *stress };
+            return PointStress { position, volume, stress: *stress, strain: linear };
         }
+        let squared = product(&transpose(displacement_gradient), displacement_gradient);
         let ratio = 1.0 + volume_change(displacement_gradient);
         let deformation = sum(displacement_gradient, 1.0, &IDENTITY);
         let stress = scaled(1.0 / ratio, &product(stress, &transpose(&deformation)));
-        PointStress { position, volume: volume * ratio, stress }
+        PointStress { position, volume: volume * ratio, stress, strain: sum(&linear, 0.5, &squared) }
     }
 }
 

@@ -66,6 +66,9 @@ pub enum LockingMend {
 /// full integration lose accuracy to volumetric locking.
 pub const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 
+/// Rounding of a Poisson's ratio that follows from other moduli.
+const ROUNDING_OF_RATIO: f64 = 1e-12;
+
 /// The edges of a tetrahedron; the first three are those of a triangle.
 pub(super) const EDGES_OF_SIMPLEX: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
 
@@ -144,7 +147,8 @@ impl LockingMend {
             SolidKind::Quadrilateral4 | SolidKind::Hexahedron8 => Self::MeanGradient,
             SolidKind::Triangle6 | SolidKind::Quadrilateral8 | SolidKind::Tetrahedron10 | SolidKind::Hexahedron20 => {
                 let has_free_thickness = matches!(idealisation, Idealisation::PlaneStress { .. });
-                if moduli.poisson() > NEARLY_INCOMPRESSIBLE && !has_free_thickness {
+                // The ratio of rounded moduli: the bound itself is below it in any units.
+                if moduli.poisson() > NEARLY_INCOMPRESSIBLE + ROUNDING_OF_RATIO && !has_free_thickness {
                     Self::MeanDilatation
                 } else {
                     Self::None
