@@ -168,12 +168,12 @@ fn edges_that_are_drawn_round_become_chords() {
                 place[up] += 0.05;
             }
             if name.starts_with('u') && place[up] == 2.0 {
-                // By a tenth about the far edge.
+                // By a tenth about the far edge, and up.
                 let (x, height) = (place[0] - 1.0, place[up] - 1.0);
                 let (sine, cosine) = 0.1_f64.sin_cos();
                 let mut motion = vec![0.0; dimension];
                 motion[0] = x * cosine + height * sine - x;
-                motion[up] = height * cosine - x * sine - height;
+                motion[up] = height * cosine - x * sine - height + 0.1;
                 turned.insert(name.clone(), json!(motion));
                 model["supports"][name] = json!(&["x", "y", "z"][..dimension]);
             } else if name.starts_with('u') {
