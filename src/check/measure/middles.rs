@@ -61,7 +61,7 @@ pub(super) fn following(model: &Model) -> Vec<[usize; 3]> {
     let of_face = |face: &Vec<String>| {
         let on_face = |node: &&str| face.iter().any(|one| one == node);
         let middles = face.iter().filter_map(|node| *edges.get(node.as_str())?);
-        let nodes = middles.filter(|edge| edge.iter().all(|node| on_face(node)));
+        let nodes = middles.filter(|edge| edge.iter().all(&on_face));
         let number = |node: &str| model.nodes.get_index_of(node);
         nodes.filter_map(|[m, a, b]| Some([number(m)?, number(a)?, number(b)?])).collect::<Vec<_>>()
     };

@@ -184,6 +184,18 @@ impl Workspace {
         most
     }
 
+    /// Gives half of the force on each middle that follows to either end of its edge.
+    fn share_among_ends(&mut self, following: &[[usize; 3]]) {
+        for [middle, ends @ ..] in following {
+            let (force, rounding) = (self.balance[*middle], self.rounding[*middle]);
+            (self.balance[*middle], self.rounding[*middle]) = (MeasuredVector::zeros(), 0.0);
+            for end in ends {
+                self.balance[*end] += force * 0.5;
+                self.rounding[*end] += rounding;
+            }
+        }
+    }
+
     /// Adds the forces of a contact to the nodes it acts on.
     fn add_contact(
         &mut self,
@@ -382,8 +394,7 @@ impl Judge {
     /// those of the supports apart.
     fn forces(&mut self, increment: &Increment) -> (f64, Balance) {
         let (posted, work) = (&self.posted, &mut self.work);
-        let mut most = self.largest_force;
-        let mut outside = Balance::default();
+        let (mut most, mut outside) = (self.largest_force, Balance::default());
         work.rounding.fill(0.0);
         work.responses.clear();
         for (node, (balance, load)) in work.balance.iter_mut().zip(&work.loading.forces).enumerate() {
@@ -454,14 +465,7 @@ impl Judge {
             work.add_contact(posted, contact, state, &frame, &mut outside);
             most = most.max(state.normal_reaction.abs());
         }
-        for [middle, ends @ ..] in &posted.following {
-            let (force, rounding) = (work.balance[*middle], work.rounding[*middle]);
-            (work.balance[*middle], work.rounding[*middle]) = (MeasuredVector::zeros(), 0.0);
-            for end in ends {
-                work.balance[*end] += force * 0.5;
-                work.rounding[*end] += rounding;
-            }
-        }
+        work.share_among_ends(&posted.following);
         // A force that is not finite already gives an unbounded error; the scale of the other errors stays finite.
         if most.is_finite() {
             self.largest_force = most;

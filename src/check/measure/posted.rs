@@ -8,8 +8,9 @@ use crate::check::measure::numbers::{MeasuredVector, largest, padded};
 use crate::check::measure::obstacles::{MeasuredFrame, MeasuredObstacle};
 use crate::check::measure::solids::{MeasuredFace, SolidShares, pressed_surfaces};
 use crate::check::measure::turning::{MeasuredPivot, ObstaclePlacement};
-use crate::model::request::{JobRequest, Model, PlaneCondition};
+use crate::model::request::{Contact, JobRequest, Model, PlaneCondition};
 use indexmap::{IndexMap, IndexSet};
+use std::collections::HashMap;
 use std::f64::consts::SQRT_2;
 
 #[derive(Debug, Clone)]
@@ -124,28 +125,7 @@ impl Posted {
         let touched = TouchedSurfaces::new(model);
         let middles = middles(model);
         let obstacles: Vec<MeasuredObstacle> = model.obstacles.values().map(MeasuredObstacle::new).collect();
-        let contact = |contact: &crate::model::request::Contact| {
-            let node = model.nodes.get_index_of(&contact.node)?;
-            let friction = contact.friction;
-            let point = ContactPoint::at_node(node, padded(&model.nodes[node]));
-            if let Some(body) = MeasuredBody::new(model, contact, &touched) {
-                return Some(PostedContact {
-                    point,
-                    counterpart: Counterpart::Body(Box::new(body)),
-                    motion: None,
-                    friction,
-                });
-            }
-            let obstacle = model.obstacles.get_index_of(&contact.obstacle)?;
-            let at_rest = MeasuredVector::zeros();
-            let gap_at = |place: &MeasuredVector| obstacles[obstacle].frame(model.dimension, place, &at_rest, 0.0).gap;
-            let point = match middles.get(contact.node.as_str()) {
-                Some(nodes) => ContactPoint::past_middle(*nodes, model, gap_at),
-                None => point,
-            };
-            let motion = moving.get_index_of(contact.obstacle.as_str());
-            Some(PostedContact { point, counterpart: Counterpart::Obstacle(obstacle), motion, friction })
-        };
+        let contact = |contact| posted_contact(model, contact, (&touched, &middles), (&obstacles, &moving));
         let shares = SolidShares::new(model);
         let pressed: IndexMap<&str, Vec<MeasuredFace>> = pressed_surfaces(model).into_iter().collect();
         let scales = load_scales.iter().copied().chain(std::iter::repeat(1.0));
@@ -283,6 +263,32 @@ impl Posted {
             Counterpart::Body(body) => body.distance(displacements) / SQRT_2,
         }
     }
+}
+
+/// A contact of a model, with the surfaces of bodies and the middles of edges that touch, its obstacles and the names of those
+/// that move.
+fn posted_contact(
+    model: &Model,
+    contact: &Contact,
+    (touched, middles): (&TouchedSurfaces, &HashMap<&str, [usize; 3]>),
+    (obstacles, moving): (&[MeasuredObstacle], &IndexSet<&str>),
+) -> Option<PostedContact> {
+    let node = model.nodes.get_index_of(&contact.node)?;
+    let friction = contact.friction;
+    let at_node = || ContactPoint::at_node(node, padded(&model.nodes[node]));
+    if let Some(body) = MeasuredBody::new(model, contact, touched) {
+        let counterpart = Counterpart::Body(Box::new(body));
+        return Some(PostedContact { point: at_node(), counterpart, motion: None, friction });
+    }
+    let obstacle = model.obstacles.get_index_of(&contact.obstacle)?;
+    let at_rest = MeasuredVector::zeros();
+    let gap_at = |place: &MeasuredVector| obstacles[obstacle].frame(model.dimension, place, &at_rest, 0.0).gap;
+    let point = match middles.get(contact.node.as_str()) {
+        Some(nodes) => ContactPoint::past_middle(*nodes, model, gap_at),
+        None => at_node(),
+    };
+    let motion = moving.get_index_of(contact.obstacle.as_str());
+    Some(PostedContact { point, counterpart: Counterpart::Obstacle(obstacle), motion, friction })
 }
 
 /// Numbers of the nodes with their values, as far as there are any.

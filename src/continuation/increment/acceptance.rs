@@ -71,20 +71,10 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
     // The next stage may hold what moves freely in this one.
     arrival.stop =
         arrival.stop.filter(|stop| !(stage_ends && *stop == StopReason::Mechanism && reached.event.is_none()));
-    let mut point = arrival.point;
-    let unstable = !stage_ends && arrival.stop.is_none() && loses_stability(trace, point.kind, negative_before);
+    let unstable = !stage_ends && arrival.stop.is_none() && loses_stability(trace, arrival.point.kind, negative_before);
     let is_turned = arriving.load_sign >= 0.0 && trace.at.here.load_sign < 0.0;
-    if let Some(cause) = trace.cause_of_jump(is_turned, arrival.stop).filter(|_| !stage_ends) {
-        stages::begin_jump(trace, cause, &mut point);
-        arrival.taken = None;
-    } else if unstable {
-        arrival.taken = leave_unstable_path(trace, &arrival.options, &mut point);
-    } else if let Some(reason) = arrival.stop {
-        point.kind = PointKind::End;
-        trace.end_at(reason, &arrival.options);
-    } else if stage_ends {
-        stages::tell_end(&mut point, stage);
-    }
+    conclude(trace, &mut arrival, stage_ends, unstable, is_turned);
+    let point = arrival.point;
     let reactions = arrived.filter(|arrived| is_anew(trace, arrived));
     trace.note_passed(arrival_rate, &arriving.modes, reached.event, point.kind, stage_ends);
     let row = trace.emit(Emitted {
@@ -105,6 +95,21 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
     }
     trace.at.stage_over = stage_ends && trace.at.phase == Phase::Running;
     Some(row)
+}
+
+/// Begins a jump, leaves an unstable path, or ends the path or its stage, if one of these comes next.
+fn conclude(trace: &mut PathTrace<'_>, arrival: &mut Arrival, stage_ends: bool, unstable: bool, is_turned: bool) {
+    if let Some(cause) = trace.cause_of_jump(is_turned, arrival.stop).filter(|_| !stage_ends) {
+        stages::begin_jump(trace, cause, &mut arrival.point);
+        arrival.taken = None;
+    } else if unstable {
+        arrival.taken = leave_unstable_path(trace, &arrival.options, &mut arrival.point);
+    } else if let Some(reason) = arrival.stop {
+        arrival.point.kind = PointKind::End;
+        trace.end_at(reason, &arrival.options);
+    } else if stage_ends {
+        stages::tell_end(&mut arrival.point, &trace.scene.stages[trace.at.stage]);
+    }
 }
 
 /// The residual over the force scale, or over what rounding makes of the structure's forces where these are no larger:

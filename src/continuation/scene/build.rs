@@ -229,12 +229,12 @@ fn coincide(first: &ContactPair, second: &ContactPair) -> bool {
         && (first.initial_gap - second.initial_gap).abs() <= COINCIDENCE_TOLERANCE
 }
 
-/// Curves by the names of their polylines.
-type Curves<'a> = HashMap<&'a str, Arc<PlaneCurve>>;
+/// CurvesByName by the names of their polylines.
+type CurvesByName<'a> = HashMap<&'a str, Arc<PlaneCurve>>;
 
 /// The curves of the polylines by name, relative to their origins; dimensionless. A model that was checked has one for
 /// each polyline.
-fn curves(model: &Model, length: f64) -> Curves<'_> {
+fn curves(model: &Model, length: f64) -> CurvesByName<'_> {
     let polylines = model.obstacles.iter().filter_map(|(name, obstacle)| match obstacle {
         request::Obstacle::Polyline(polyline) => Some((name.as_str(), polyline)),
         request::Obstacle::Plane { .. } | request::Obstacle::Ball { .. } | request::Obstacle::Cylinder { .. } => None,
@@ -252,7 +252,7 @@ fn place_and_gap(
     contact: &request::Contact,
     node: usize,
     basis: &BasisTransformation,
-    (length, curves): (f64, &Curves<'_>),
+    (length, curves): (f64, &CurvesByName<'_>),
 ) -> (Vec<f64>, Option<f64>) {
     let place = &model.nodes[node];
     let Some(ends) = basis.extrapolated_from(node) else { return (place.clone(), None) };
@@ -269,7 +269,7 @@ fn surface_at(
     contact: &request::Contact,
     place: &[f64],
     length: f64,
-    curves: &Curves<'_>,
+    curves: &CurvesByName<'_>,
 ) -> (RigidSurface, f64) {
     let dimension = model.dimension;
     // A gap within the round-off of the coordinates is closed.
@@ -318,7 +318,7 @@ fn build_contact(
     model: &Model,
     contact: &request::Contact,
     (node, place, gap): (usize, &[f64], Option<f64>),
-    (length, curves): (f64, &Curves<'_>),
+    (length, curves): (f64, &CurvesByName<'_>),
     structure: &Structure,
 ) -> ContactPair {
     let (obstacle, gap_of_place) = surface_at(model, contact, place, length, curves);

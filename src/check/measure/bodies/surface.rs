@@ -3,7 +3,7 @@
 use crate::check::measure::numbers::{MeasuredVector, padded};
 use crate::model::request::{Element, Model, SolidKind, Surface};
 use crate::model::solids::closed_surfaces::begin_away_from_contact;
-use crate::model::solids::faces::{FaceMatch, surface_faces};
+use crate::model::solids::faces::{FaceMatch, SolidFace, surface_faces};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -97,20 +97,7 @@ impl<'a> TouchedSurfaces<'a> {
         let touched = lines.iter().filter(|(name, _)| against.contains(*name));
         let faces = touched.map(|(name, lines)| (*name, in_order(lines, &places).into())).collect();
         let no_displacements = vec![MeasuredVector::zeros(); places.len()];
-        let mut faces_in_space: HashMap<&str, Vec<Vec<usize>>> = HashMap::new();
-        if model.dimension == 3 {
-            let all = model.surfaces.keys().zip(surface_faces(model));
-            for (name, faces) in all.filter(|(name, _)| named.contains(name.as_str())) {
-                let nodes = faces.into_iter().filter_map(|face| match face {
-                    FaceMatch::Face(face) => {
-                        let corners = if face.nodes.len() % 3 == 0 { 3 } else { 4 };
-                        Some(face.nodes[..corners].to_vec())
-                    }
-                    _ => None,
-                });
-                faces_in_space.insert(name.as_str(), nodes.collect());
-            }
-        }
+        let faces_in_space = faces_in_space(model, &named);
         let touched = faces_in_space.iter().filter(|(name, _)| against.contains(*name));
         let triangles = touched.map(|(name, faces)| (*name, triangles(faces).into())).collect();
         let is_held = |name: &String| model.supports.get(name).is_some_and(|components| !components.is_empty());
@@ -132,6 +119,22 @@ impl<'a> TouchedSurfaces<'a> {
         };
         all.filter_map(from_node).collect()
     }
+}
+
+/// The faces in space of the surfaces with these names, by their corners: the middles of quadratic faces follow these.
+fn faces_in_space<'a>(model: &'a Model, named: &HashSet<&str>) -> HashMap<&'a str, Vec<Vec<usize>>> {
+    if model.dimension != 3 {
+        return HashMap::new();
+    }
+    let corners = |face| match face {
+        FaceMatch::Face(SolidFace { nodes, .. }) => {
+            let corners = if nodes.len() % 3 == 0 { 3 } else { 4 };
+            Some(nodes[..corners].to_vec())
+        }
+        _ => None,
+    };
+    let all = model.surfaces.keys().zip(surface_faces(model)).filter(|(name, _)| named.contains(name.as_str()));
+    all.map(|(name, faces)| (name.as_str(), faces.into_iter().filter_map(corners).collect())).collect()
 }
 
 /// The faces of a surface with what lies beside them and the coordinates along them.
