@@ -214,7 +214,7 @@ mod tests {
     /// Work of forces and displacements is the same in both bases; both ways undo each other.
     #[test]
     fn forces_are_dual_to_displacements() {
-        let numbering = Numbering::of_translations(4, 3);
+        let numbering = Numbering::of_translations(3, 4);
         let extrapolated = |ends| TransformedEdge { ends, unknown: MiddleUnknown::Extrapolated };
         let basis = BasisTransformation::new(BTreeMap::from([(1, extrapolated([0, 3])), (2, extrapolated([3, 0]))]));
         let unknowns: Vec<f64> = (0..12).map(|place| (1.7 * f64::from(place)).sin()).collect();
@@ -228,7 +228,7 @@ mod tests {
         basis.forces_on_nodes(&numbering, &mut on_unknowns);
         basis.prescribed(&numbering, |_| true, &mut displacements);
         for (one, other) in on_unknowns.iter().zip(&forces).chain(displacements.iter().zip(&unknowns)) {
-            assert!((one - other).abs() < 1e-15, "{one} {other}");
+            assert!((one - other).abs() < 4e-15, "{one} {other}");
         }
     }
 }
