@@ -107,11 +107,13 @@ pub(crate) fn applied_forces(scene: &Scene, row: &RowSource<'_>) -> SpaceVector 
         let dead = row.state.load * loading.pattern.forces[freedom] + loading.held.forces[freedom];
         dead + following.get(freedom).copied().unwrap_or(0.0)
     };
-    let mut forces: Vec<f64> = (0..structure.freedoms()).map(force).collect();
-    scene.basis.forces_on_nodes(&structure.numbering, &mut forces);
     let mut sum = [0.0; 3];
     for node in 0..structure.numbering.nodes() {
-        sum.iter_mut().zip(structure.translations_of(node)).for_each(|(sum, freedom)| *sum += forces[freedom]);
+        sum.iter_mut().zip(structure.translations_of(node)).for_each(|(sum, freedom)| *sum += force(freedom));
+    }
+    // The ends of their edges have the forces of middles that follow.
+    for node in scene.basis.following() {
+        sum.iter_mut().zip(structure.translations_of(node)).for_each(|(sum, freedom)| *sum -= force(freedom));
     }
     sum[..structure.dimension].iter().map(|value| value * scene.plan().force_scale).collect()
 }

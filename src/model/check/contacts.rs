@@ -343,20 +343,21 @@ fn following_middles(scope: &Scope, mistakes: &mut Mistakes) {
                 format!("{}; hold these in the same components, or leave the support out", one.follows())
             });
         }
-        for (index, stage) in model.stages.iter().enumerate() {
-            let at = at_stages.index(index);
-            if one.is_driven_off(stage) {
-                let at = at.member("displacements");
-                mistakes.add(&at.member(one.middle), || {
-                    format!("{}; the mean of their displacements is expected", one.follows())
-                });
-            }
-            let bound = stage.until.as_ref().and_then(|until| until.displacement.as_ref());
-            if bound.is_some_and(|bound| bound.node == one.middle) {
-                let (until, node) = (at.member("until"), "node");
-                let bound = until.member("displacement");
-                mistakes.add(&bound.member(node), || format!("{}; name one of these", one.follows()));
-            }
+    }
+    for (index, stage) in model.stages.iter().enumerate() {
+        let at = at_stages.index(index);
+        let at_displacements = at.member("displacements");
+        let driven = stage.displacements.keys().filter_map(|node| following.get(node.as_str()));
+        for one in driven.filter(|one| one.is_driven_off(stage)) {
+            mistakes.add(&at_displacements.member(one.middle), || {
+                format!("{}; the mean of their displacements is expected", one.follows())
+            });
+        }
+        let bound = stage.until.as_ref().and_then(|until| until.displacement.as_ref());
+        if let Some(one) = bound.and_then(|bound| following.get(bound.node.as_str())) {
+            let at_until = at.member("until");
+            let at_bound = at_until.member("displacement");
+            mistakes.add(&at_bound.member("node"), || format!("{}; name one of these", one.follows()));
         }
     }
 }

@@ -1,4 +1,10 @@
 //! The areas of bodies that the contacts of nodes stand for.
+//!
+//! ```text
+//! A_a = ∫ N_a dA,      p = r_n/A_a
+//! ```
+//!
+//! with the functions of the [basis](crate::mechanics::structure::basis_transformation) that contacts are solved in.
 
 use crate::mechanics::structure::elements::solid::any::each_traction_force;
 use crate::mechanics::structure::elements::solid::shapes::faces::faces_of;

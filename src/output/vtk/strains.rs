@@ -1,4 +1,10 @@
 //! The strains of solids, from the displacements of their nodes.
+//!
+//! ```text
+//! E = (H + Hᵀ + HᵀH)/2,  where strains count as small (H + Hᵀ)/2;      H = ∂u/∂X
+//! ```
+//!
+//! The mean is that over the volume of the stress.
 
 use crate::mechanics::structure::elements::materials::ElasticMaterial;
 use crate::mechanics::structure::elements::solid::any::{AnySolid, SolidData};
