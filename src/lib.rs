@@ -147,8 +147,8 @@ pub use model::request::{
     DisplacementBound, ElasticConstants, Element, ElementReference, Events, Explore, ForceRange, JobRequest,
     JumpMotion, JumpMotionKind, LoadSign, LockingMend, Material, MeshFile, MeshFormat, MeshGroup, Method, Model, Mpec,
     NamedSet, Obstacle, ObstacleRotation, OnPathEnd, PlaneCondition, Polyline, Record, RecordedContact,
-    RecordedContacts, RecordedElements, RecordedSupports, Regularised, Section, Side, Solid, SolidKind, Stage,
-    StageControl, Surface, Units, Until,
+    RecordedContacts, RecordedElements, RecordedSupports, Regularised, RoundedBox, Section, Side, Solid, SolidKind,
+    Stage, StageControl, Surface, TriangleMesh, Units, Until,
 };
 pub use model::{InputError, InputErrors, read};
 pub use resources::cancel::CancelFlag;

@@ -1,11 +1,12 @@
 //! Linear algebra: dense factorisations and factorisations of sparse bordered matrices, which report when they are
-//! unreliable; fixed points; smooth curves in the plane; numbers that carry derivatives. All higher layers may use this
+//! unreliable; fixed points; smooth curves in the plane and smooth closed surfaces in space; numbers that carry derivatives. All higher layers may use this
 //! module; it uses none of them.
 
 pub mod dense;
 pub(crate) mod differential;
 pub(crate) mod fixed_point;
 pub mod plane_curve;
+pub mod rounded_polyhedron;
 pub(crate) mod scalar_root;
 pub mod sparse;
 

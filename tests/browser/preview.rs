@@ -58,6 +58,15 @@ async fn a_model_is_drawn_as_it_is_written_and_what_cannot_be_drawn_is_said() {
     browser.put("#request", &request.to_string()).await;
     // Two circles of the drum, and more.
     browser.until(&format!("{SAID} === '' && {finite} > {}", flat + 98)).await;
+    // The twelve edges of a box, without the diagonals of its faces.
+    let flat = browser.ask(&finite).await.as_u64().expect("a count");
+    request["model"]["obstacles"]["block"] = json!({"kind": "box", "center": [0, 0.2, -0.5], "size": [1, 0.5, 0.6]});
+    browser.put("#request", &request.to_string()).await;
+    browser.until(&format!("{SAID} === '' && {finite} === {}", flat + 24)).await;
+    request["model"]["obstacles"]["block"]["size"] = json!([1, 0, 0.6]);
+    browser.put("#request", &request.to_string()).await;
+    browser.until(&format!("{SAID}.includes('“block” is not drawn: its size has to be 3 numbers above 0')")).await;
+    request["model"]["obstacles"].as_object_mut().expect("members").remove("block");
     request["model"]["obstacles"]["drum"]["axis"] = json!([0, 0, 0]);
     request["model"]["obstacles"]["ramp"].as_object_mut().expect("members").remove("section");
     browser.put("#request", &request.to_string()).await;

@@ -67,6 +67,15 @@ pub fn in_units(mut request: JobRequest, length: f64, force: f64) -> JobRequest 
                 polyline.rounding.iter_mut().for_each(|rounding| *rounding *= length);
                 polyline.section.iter_mut().for_each(|section| scale(&mut section.origin, length));
             }
+            Obstacle::Box(own) => {
+                scale(&mut own.center, length);
+                scale(&mut own.size, length);
+                own.rounding.iter_mut().for_each(|rounding| *rounding *= length);
+            }
+            Obstacle::TriangleMesh(mesh) => {
+                mesh.points.iter_mut().for_each(|point| scale(point, length));
+                mesh.rounding *= length;
+            }
         }
     }
     for stage in &mut request.model.stages {
@@ -127,6 +136,13 @@ pub fn about_axes(mut request: JobRequest, axes: &Axes, shift: [f64; 3]) -> JobR
                     section.y = turned(axes, &section.y);
                 }
             }
+            Obstacle::Box(own) => {
+                own.center = place(&own.center);
+                let [x, y] = [(&own.x, [1.0, 0.0, 0.0]), (&own.y, [0.0, 1.0, 0.0])]
+                    .map(|(given, usual)| turned(axes, given.as_deref().unwrap_or(&usual)));
+                (own.x, own.y) = (Some(x), Some(y));
+            }
+            Obstacle::TriangleMesh(mesh) => mesh.points.iter_mut().for_each(|point| *point = place(point)),
         }
     }
     for stage in &mut request.model.stages {
@@ -181,6 +197,11 @@ pub fn turned_in_plane(mut request: JobRequest, angle: f64, shift: f64) -> JobRe
             Obstacle::Ball { center, .. } => *center = place(center),
             Obstacle::Cylinder { .. } => unreachable!("a cylinder is an obstacle in space"),
             Obstacle::Polyline(polyline) => polyline.points.iter_mut().for_each(|point| *point = place(point)),
+            Obstacle::Box(own) => {
+                own.center = place(&own.center);
+                own.x = Some(turn(own.x.as_deref().unwrap_or(&[1.0, 0.0])));
+            }
+            Obstacle::TriangleMesh(_) => unreachable!("a triangle mesh is an obstacle in space"),
         }
     }
     for stage in &mut request.model.stages {

@@ -47,6 +47,7 @@ mod mpec_cones;
 mod mpec_contact_increment;
 mod mpec_endings;
 mod mpec_unattained;
+mod polyhedra;
 mod polylines;
 mod published;
 mod random_corners;

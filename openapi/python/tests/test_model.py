@@ -72,6 +72,26 @@ class Building(unittest.TestCase):
         ramp = model.request()["model"]["obstacles"]["ramp"]
         self.assertEqual(ramp["section"], {"origin": [0, 0, 0], "x": [1, 0, 0], "y": [0, 0, 1]})
 
+    def test_boxes_and_triangle_meshes(self):
+        model = arcslip.Model(3)
+        model.box("block", (0, 0, -1), (4, 4, 2), rounding=0.2, x=(1, 1, 0), y=(-1, 1, 0))
+        points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+        model.triangle_mesh("tip", points, [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)], 0.1, side="inside")
+        self.assertEqual(model.request()["model"]["obstacles"], {
+            "block": {
+                "kind": "box", "center": [0, 0, -1], "size": [4, 4, 2], "side": "outside", "rounding": 0.2,
+                "x": [1, 1, 0], "y": [-1, 1, 0],
+            },
+            "tip": {
+                "kind": "triangle_mesh", "points": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
+                "triangles": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]], "rounding": 0.1, "side": "inside",
+            },
+        })
+        flat = arcslip.Model(2)
+        self.assertEqual(flat.box("step", (0, 0), (2, 1)), "step")
+        step = {"kind": "box", "center": [0, 0], "size": [2, 1], "side": "outside"}
+        self.assertEqual(flat.request()["model"]["obstacles"], {"step": step})
+
     def test_a_request_is_a_copy(self):
         model = arcslip.Model(2)
         model.node("a", 0, 0)

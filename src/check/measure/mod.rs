@@ -64,6 +64,7 @@ pub(crate) mod history;
 mod middles;
 mod numbers;
 pub(crate) mod obstacles;
+mod polyhedra;
 mod polylines;
 pub(crate) mod posted;
 pub(crate) mod rows;

@@ -4,8 +4,9 @@
 //! `t1 = (e_k - n_k n)/|.|` with `k` the first index whose `|n_k|` is the smallest within 1e-9, and `t2 = n x t1`.
 
 use crate::check::measure::numbers::{MeasuredVector, largest, padded};
+use crate::check::measure::polyhedra::MeasuredPolyhedron;
 use crate::check::measure::polylines::MeasuredCurve;
-use crate::model::request::{Obstacle as Posted, Side};
+use crate::model::request::{Obstacle as Posted, PostedShape, Side};
 
 /// Components of a unit normal that differ by no more than this count as equal.
 const EQUALLY_ALIGNED: f64 = 1e-9;
@@ -13,7 +14,7 @@ const EQUALLY_ALIGNED: f64 = 1e-9;
 /// An obstacle at rest.
 #[derive(Debug, Clone)]
 pub(super) struct MeasuredObstacle {
-    /// A point of a plane, the centre of a ball, a point on the axis of a cylinder, the first point of a polyline.
+    /// A point of a plane, the centre of a ball, a point on the axis of a cylinder, the first point of a polyline or polyhedron.
     place: MeasuredVector,
     shape: ObstacleShape,
 }
@@ -34,6 +35,7 @@ enum ObstacleShape {
     },
     /// With the directions of its coordinates.
     Polyline(MeasuredCurve, [MeasuredVector; 2]),
+    Polyhedron(MeasuredPolyhedron),
 }
 
 /// The gap and the frame of an obstacle at a node.
@@ -48,21 +50,21 @@ pub(super) struct MeasuredFrame {
 }
 
 impl MeasuredObstacle {
-    pub fn new(posted: &Posted) -> Self {
-        match posted {
-            Posted::Plane { point, normal } => {
+    pub fn new(posted: &Posted, dimension: usize) -> Self {
+        match posted.shape(dimension) {
+            PostedShape::Plane { point, normal } => {
                 let normal = padded(normal);
                 Self { place: padded(point), shape: ObstacleShape::Plane(normal * (1.0 / normal.norm())) }
             }
-            Posted::Ball { center, radius, side } => {
-                Self { place: padded(center), shape: ObstacleShape::Ball { radius: *radius, sign: sign_of(*side) } }
+            PostedShape::Ball { center, radius, side } => {
+                Self { place: padded(center), shape: ObstacleShape::Ball { radius, sign: sign_of(side) } }
             }
-            Posted::Cylinder { point, axis, radius, side } => {
+            PostedShape::Cylinder { point, axis, radius, side } => {
                 let axis = padded(axis).normalize();
-                let shape = ObstacleShape::Cylinder { axis, radius: *radius, sign: sign_of(*side) };
+                let shape = ObstacleShape::Cylinder { axis, radius, sign: sign_of(side) };
                 Self { place: padded(point), shape }
             }
-            Posted::Polyline(polyline) => {
+            PostedShape::Curve(polyline) => {
                 let first = polyline.points.first().map_or_else(MeasuredVector::zeros, |point| padded(point));
                 let (origin, axes) = match &polyline.section {
                     None => (first, [MeasuredVector::x(), MeasuredVector::y()]),
@@ -73,7 +75,11 @@ impl MeasuredObstacle {
                         (padded(&section.origin) + x * first.x + y * first.y, [x, y])
                     }
                 };
-                Self { place: origin, shape: ObstacleShape::Polyline(MeasuredCurve::new(polyline), axes) }
+                Self { place: origin, shape: ObstacleShape::Polyline(MeasuredCurve::new(&polyline), axes) }
+            }
+            PostedShape::Polyhedron(mesh) => {
+                let place = mesh.points.first().map_or_else(MeasuredVector::zeros, |point| padded(point));
+                Self { place, shape: ObstacleShape::Polyhedron(MeasuredPolyhedron::new(&mesh)) }
             }
         }
     }
@@ -97,6 +103,10 @@ impl MeasuredObstacle {
             ObstacleShape::Polyline(curve, axes) => {
                 let (gap, [x, y]) = curve.gap(axes.map(|axis| axis.dot(&from)));
                 (gap, axes[0] * x + axes[1] * y, curve.size)
+            }
+            ObstacleShape::Polyhedron(polyhedron) => {
+                let (gap, normal) = polyhedron.gap(&from);
+                (gap, normal, polyhedron.size)
             }
         };
         let reach = [place, &self.place].into_iter().map(largest).fold(size.max(reach), f64::max);

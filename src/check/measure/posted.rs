@@ -124,7 +124,8 @@ impl Posted {
         let moving: IndexSet<&str> = moved.map(String::as_str).collect();
         let touched = TouchedSurfaces::new(model);
         let middles = middles(model);
-        let obstacles: Vec<MeasuredObstacle> = model.obstacles.values().map(MeasuredObstacle::new).collect();
+        let measured = |obstacle| MeasuredObstacle::new(obstacle, model.dimension);
+        let obstacles: Vec<MeasuredObstacle> = model.obstacles.values().map(measured).collect();
         let contact = |contact| posted_contact(model, contact, (&touched, &middles), (&obstacles, &moving));
         let shares = SolidShares::new(model);
         let pressed: IndexMap<&str, Vec<MeasuredFace>> = pressed_surfaces(model).into_iter().collect();

@@ -33,7 +33,8 @@ impl MeasuredPivot {
             Obstacle::Plane { point, .. } => (Some(point), None),
             Obstacle::Cylinder { point, axis, .. } => (Some(point), Some(axis)),
             Obstacle::Ball { center, .. } => (Some(center), None),
-            Obstacle::Polyline(_) => (None, None),
+            Obstacle::Box(own) => (Some(&own.center), None),
+            Obstacle::Polyline(_) | Obstacle::TriangleMesh(_) => (None, None),
         };
         let axis = match axis.as_ref().or(own_axis) {
             Some(axis) if model.dimension == 3 => padded(axis),

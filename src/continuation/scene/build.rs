@@ -1,8 +1,8 @@
 //! Conversion of the request's names and units to dimensionless numbers.
 
-use crate::algebra::plane_curve::PlaneCurve;
 use crate::continuation::scene::elements::ElementBuilder;
 use crate::continuation::scene::reported::Reported;
+use crate::continuation::scene::rigid_surfaces::RigidSurfaces;
 use crate::continuation::scene::solid_loads::{LoadedSolids, add_pressure_faces, pressed_surfaces};
 use crate::continuation::scene::stage_load::StageLoad;
 use crate::continuation::scene::tolerances::{COINCIDENCE_TOLERANCE, MISSING_MOTION, SINGLE_MOTION};
@@ -11,7 +11,7 @@ use crate::mechanics::AUXILIARY_UNIT;
 use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::kinematics::Kinematics;
 use crate::mechanics::contact::obstacle::RigidSurface;
-use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit_of};
+use crate::mechanics::contact::vector::{Vector, scaled, size};
 use crate::mechanics::contact::{ContactPair, Sliding};
 use crate::mechanics::equations::stage_end_criteria::End;
 use crate::mechanics::problem::contact_jacobian;
@@ -19,7 +19,6 @@ use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::node_contact_forces::Corner;
 use crate::mechanics::structure::Structure;
 use crate::mechanics::structure::basis_transformation::{BasisTransformation, extrapolated};
-use crate::model::input::limits::PENETRATION_TOLERANCE;
 use crate::model::request::{self, Analysis, Model};
 use crate::model::solids::contact_surfaces::{BodyContact, ContactSurfaces};
 use crate::resources::budget;
@@ -82,7 +81,7 @@ pub(super) fn build_contacts(
     let mut of_node: HashMap<usize, Vec<usize>> = HashMap::new();
     // By node and gap, so that only contacts of nearly the same gap are compared.
     let mut by_gap: HashMap<usize, BTreeMap<u64, Vec<usize>>> = HashMap::new();
-    let curves = curves(model, length);
+    let rigid = RigidSurfaces::of(model, length);
     let surfaces = ContactSurfaces::new(model, length);
     for (index, contact) in model.contacts.iter().enumerate() {
         budget::spend(1);
@@ -94,9 +93,9 @@ pub(super) fn build_contacts(
                 Err(_) => continue,
             },
             None => {
-                let (place, gap) = place_and_gap(model, contact, node_number, basis, (length, &curves));
+                let (place, gap) = place_and_gap(model, contact, node_number, basis, &rigid);
                 let kinematics = turning.kinematics(contact, node_number, &place, length);
-                let built = build_contact(model, contact, (node_number, &place, gap), (length, &curves), structure);
+                let built = build_contact(contact, (node_number, &place, gap), &rigid, structure);
                 ContactPair { kinematics: kinematics.unwrap_or(Kinematics::Node(node_number)), ..built }
             }
         };
@@ -200,48 +199,10 @@ fn ordered(value: f64) -> u64 {
 
 /// Whether two contacts coincide: the same node and the same surface.
 fn coincide(first: &ContactPair, second: &ContactPair) -> bool {
-    let near = |a: &Vector, b: &Vector| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= COINCIDENCE_TOLERANCE);
-    let surfaces = match (&first.obstacle, &second.obstacle) {
-        (RigidSurface::Plane { normal: a }, RigidSurface::Plane { normal: b }) => near(a, b),
-        (RigidSurface::Ball { offset: a, side: x }, RigidSurface::Ball { offset: b, side: y }) => near(a, b) && x == y,
-        (
-            RigidSurface::Cylinder { axis: a, offset: x, side: u },
-            RigidSurface::Cylinder { axis: b, offset: y, side: v },
-        ) => (near(a, b) || near(a, &scaled(b, -1.0))) && near(x, y) && u == v,
-        (
-            RigidSurface::Curve { curve: a, section: first, offset: x, side: u, .. },
-            RigidSurface::Curve { curve: b, section: second, offset: y, side: v, .. },
-        ) => {
-            let same_plane = first.iter().zip(second).all(|(first, second)| near(first, second));
-            (Arc::ptr_eq(a, b) || a == b) && same_plane && near(x, y) && u == v
-        }
-        (
-            RigidSurface::Plane { .. }
-            | RigidSurface::Ball { .. }
-            | RigidSurface::Cylinder { .. }
-            | RigidSurface::Curve { .. },
-            _,
-        ) => false,
-    };
     first.kinematics.own_nodes().len() == 1
         && first.kinematics.nodes() == second.kinematics.nodes()
-        && surfaces
+        && first.obstacle.coincides(&second.obstacle, COINCIDENCE_TOLERANCE)
         && (first.initial_gap - second.initial_gap).abs() <= COINCIDENCE_TOLERANCE
-}
-
-/// CurvesByName by the names of their polylines.
-type CurvesByName<'a> = HashMap<&'a str, Arc<PlaneCurve>>;
-
-/// The curves of the polylines by name, relative to their origins; dimensionless. A model that was checked has one for
-/// each polyline.
-fn curves(model: &Model, length: f64) -> CurvesByName<'_> {
-    let polylines = model.obstacles.iter().filter_map(|(name, obstacle)| match obstacle {
-        request::Obstacle::Polyline(polyline) => Some((name.as_str(), polyline)),
-        request::Obstacle::Plane { .. } | request::Obstacle::Ball { .. } | request::Obstacle::Cylinder { .. } => None,
-    });
-    polylines
-        .filter_map(|(name, polyline)| Some((name, Arc::new(polyline.curve().ok()?.in_units_of(length)))))
-        .collect()
 }
 
 /// The place of a node whose contact with an obstacle is solved for, and the gap there if it is not that of the place: where
@@ -252,76 +213,25 @@ fn place_and_gap(
     contact: &request::Contact,
     node: usize,
     basis: &BasisTransformation,
-    (length, curves): (f64, &CurvesByName<'_>),
+    surfaces: &RigidSurfaces<'_>,
 ) -> (Vec<f64>, Option<f64>) {
     let place = &model.nodes[node];
     let Some(ends) = basis.extrapolated_from(node) else { return (place.clone(), None) };
     let ends = ends.map(|end| &model.nodes[end]);
-    let gap = |place: &[f64]| surface_at(model, contact, place, length, curves).1;
+    let gap = |place: &[f64]| surfaces.at(&contact.obstacle, place).1;
     let combined = extrapolated(gap(place), ends.map(|end| gap(end)));
     let coordinates = place.iter().enumerate().map(|(k, value)| extrapolated(*value, ends.map(|end| end[k])));
     (coordinates.collect(), Some(combined.max(0.0)))
 }
 
-/// The obstacle of a contact relative to a place, and the gap there.
-fn surface_at(
-    model: &Model,
-    contact: &request::Contact,
-    place: &[f64],
-    length: f64,
-    curves: &CurvesByName<'_>,
-) -> (RigidSurface, f64) {
-    let dimension = model.dimension;
-    // A gap within the round-off of the coordinates is closed.
-    let snapped = |gap: f64, reach: f64| {
-        let closed = gap.abs() <= PENETRATION_TOLERANCE * length + 4.0 * f64::EPSILON * reach;
-        if closed { 0.0 } else { gap / length }
-    };
-    let reach = |values: &[f64]| place.iter().chain(values).fold(0.0_f64, |largest, value| largest.max(value.abs()));
-    match &model.obstacles[&contact.obstacle] {
-        request::Obstacle::Ball { center, radius, side } => {
-            let mut offset = [0.0; 3];
-            (0..dimension).for_each(|k| offset[k] = (place[k] - center[k]) / length);
-            let side = side.sign();
-            let gap = side * (size(&offset) * length - radius);
-            (RigidSurface::Ball { offset, side }, snapped(gap, reach(center).max(*radius)))
-        }
-        request::Obstacle::Cylinder { point, axis, radius, side } => {
-            let (axis, side) = (unit_of(axis), side.sign());
-            let mut from = [0.0; 3];
-            (0..dimension).for_each(|k| from[k] = (place[k] - point[k]) / length);
-            let offset = add(&from, -dot(&from, &axis), &axis);
-            let gap = side * (size(&offset) * length - radius);
-            (RigidSurface::Cylinder { axis, offset, side }, snapped(gap, reach(point).max(*radius)))
-        }
-        request::Obstacle::Polyline(polyline) => {
-            let (origin, side, [x, y]) = (polyline.origin(), polyline.free_side(), polyline.axes());
-            let at = polyline.coordinates(place);
-            let offset = [(at[0] - origin[0]) / length, (at[1] - origin[1]) / length, 0.0];
-            let section = [x, y, cross(&x, &y)];
-            let curve = Arc::clone(&curves[contact.obstacle.as_str()]);
-            let before = side * curve.closest([offset[0], offset[1]]).distance;
-            let from = polyline.section.as_ref().map_or(0.0, |section| reach(&section.origin));
-            let far = polyline.points.iter().map(|point| reach(point)).fold(from, f64::max);
-            (RigidSurface::Curve { curve, section, offset, side, before }, snapped(before * length, far))
-        }
-        request::Obstacle::Plane { point, normal } => {
-            let unit = unit_of(normal);
-            let gap: f64 = (0..dimension).map(|k| (place[k] - point[k]) * unit[k]).sum();
-            (RigidSurface::Plane { normal: unit }, snapped(gap, reach(point)))
-        }
-    }
-}
-
 /// `at`: the node with the place and the gap of [`place_and_gap`].
 fn build_contact(
-    model: &Model,
     contact: &request::Contact,
     (node, place, gap): (usize, &[f64], Option<f64>),
-    (length, curves): (f64, &CurvesByName<'_>),
+    surfaces: &RigidSurfaces<'_>,
     structure: &Structure,
 ) -> ContactPair {
-    let (obstacle, gap_of_place) = surface_at(model, contact, place, length, curves);
+    let (obstacle, gap_of_place) = surfaces.at(&contact.obstacle, place);
     let initial_gap = gap.unwrap_or(gap_of_place);
     let sliding = sliding(structure, node);
     let coefficient = if sliding.directions() == 0 { 0.0 } else { contact.friction };

@@ -18,6 +18,7 @@ mod elements;
 pub(crate) mod omitted_features;
 pub(crate) mod recorded_contacts;
 pub(crate) mod reported;
+mod rigid_surfaces;
 pub(crate) mod scales;
 mod solid_loads;
 mod solid_scales;

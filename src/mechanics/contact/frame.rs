@@ -37,23 +37,31 @@ pub struct Frame {
     sliding: Sliding,
 }
 
-/// How the normal turns with the position on an obstacle: `dn = W dx` with the shape operator `W = κ (I - n nᵀ - a aᵀ)`.
+/// How the normal turns with the position on an obstacle: `dn = W dx` with the shape operator
+/// `W = κ₁ (I - n nᵀ) - (κ₁ - κ₂) a aᵀ`.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Curvature {
-    /// `κ`; 0 for planes. One over a length, dimensionless.
+    /// `κ₁`, the one principal curvature; 0 for planes. One over a length, dimensionless.
     pub value: f64,
-    /// `a`, the unit vector along the straight lines of a cylinder; zero elsewhere.
-    pub straight: Vector,
+    /// `κ₁ - κ₂`, by how much the other one is less; 0 for balls, `κ₁` for cylinders.
+    pub less: f64,
+    /// `a`, the unit tangent along the other one; zero where both are equal.
+    pub along: Vector,
 }
 
 impl Curvature {
     /// The same in all tangential directions, or in the only one.
     pub fn uniform(value: f64) -> Self {
-        Self { value, straight: [0.0; 3] }
+        Self { value, less: 0.0, along: [0.0; 3] }
+    }
+
+    /// That of a surface which is straight along a unit vector.
+    pub fn around(value: f64, straight: Vector) -> Self {
+        Self { value, less: value, along: straight }
     }
 
     pub fn is_zero(&self) -> bool {
-        self.value == 0.0
+        self.value == 0.0 && self.less == 0.0
     }
 }
 
@@ -74,9 +82,9 @@ impl Frame {
 
     /// The change `W dx` of the normal with a motion.
     pub fn normal_change(&self, motion: &Vector) -> Vector {
-        let Curvature { value, straight } = &self.curvature;
+        let Curvature { value, less, along } = &self.curvature;
         let tangential = add(motion, -dot(motion, &self.normal), &self.normal);
-        scaled(&add(&tangential, -dot(motion, straight), straight), *value)
+        add(&scaled(&tangential, *value), -less * dot(motion, along), along)
     }
 
     /// The matrix `W`.
@@ -87,14 +95,14 @@ impl Frame {
 
     /// The entry `t·W s` of the shape operator for two perpendicular tangents.
     pub fn curvature_across(&self, first: &Vector, second: &Vector) -> f64 {
-        let Curvature { value, straight } = &self.curvature;
-        -value * dot(first, straight) * dot(second, straight)
+        let Curvature { less, along, .. } = &self.curvature;
+        -less * dot(first, along) * dot(second, along)
     }
 
     /// The normal curvature `t·W t` along a unit tangent.
     pub fn curvature_along(&self, tangent: &Vector) -> f64 {
-        let along = dot(tangent, &self.curvature.straight);
-        self.curvature.value * (1.0 - along * along)
+        let along = dot(tangent, &self.curvature.along);
+        self.curvature.value - self.curvature.less * along * along
     }
 
     /// The change of the first tangent with a motion, where sliding is along a line.

@@ -1,6 +1,7 @@
 //! Obstacles: the distance of a node from an obstacle, and its direction.
 
 use crate::algebra::plane_curve::PlaneCurve;
+use crate::algebra::rounded_polyhedron::RoundedPolyhedron;
 use crate::mechanics::contact::frame::Curvature;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size, unit};
 use std::sync::Arc;
@@ -38,6 +39,16 @@ pub enum RigidSurface {
         /// Distance of the undeformed node into the free side.
         before: f64,
     },
+    /// A polyhedron with rounded edges, in space.
+    Polyhedron {
+        surface: RoundedPolyhedron,
+        /// The position of the undeformed node, relative to the origin of the polyhedron.
+        offset: Vector,
+        /// 1 where nodes are free outside, -1 where they are free inside.
+        side: f64,
+        /// Distance of the undeformed node into the free side.
+        before: f64,
+    },
 }
 
 impl RigidSurface {
@@ -56,13 +67,19 @@ impl RigidSurface {
             Self::Cylinder { axis, offset, side } => {
                 let across = add(relative, -dot(relative, axis), axis);
                 let (change, normal, value) = around_center(offset, &across, *side);
-                (change, normal, Curvature { value, straight: *axis })
+                (change, normal, Curvature::around(value, *axis))
             }
             Self::Curve { curve, section: [x, y, straight], offset, side, before } => {
                 let closest = curve.closest([offset[0] + dot(relative, x), offset[1] + dot(relative, y)]);
                 let normal = add(&scaled(x, side * closest.normal[0]), side * closest.normal[1], y);
-                let curvature = Curvature { value: -side * closest.curvature_at_place(), straight: *straight };
+                let curvature = Curvature::around(-side * closest.curvature_at_place(), *straight);
                 (side * closest.distance - before, normal, curvature)
+            }
+            Self::Polyhedron { surface, offset, side, before } => {
+                let foot = surface.closest(add(offset, 1.0, relative));
+                let [(value, _), (other, along)] = foot.curvatures;
+                let curvature = Curvature { value: side * value, less: side * (value - other), along: along.into() };
+                (side * foot.distance - before, scaled(&foot.normal.into(), *side), curvature)
             }
         }
     }
@@ -70,7 +87,39 @@ impl RigidSurface {
     pub fn is_curved(&self) -> bool {
         match self {
             Self::Plane { .. } => false,
-            Self::Ball { .. } | Self::Cylinder { .. } | Self::Curve { .. } => true,
+            Self::Ball { .. } | Self::Cylinder { .. } | Self::Curve { .. } | Self::Polyhedron { .. } => true,
+        }
+    }
+
+    /// Whether two contacts of one node have the same surface: their lengths and directions differ by no more than a
+    /// tolerance.
+    pub fn coincides(&self, other: &Self, tolerance: f64) -> bool {
+        let near = |a: &Vector, b: &Vector| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= tolerance);
+        match (self, other) {
+            (Self::Plane { normal: a }, Self::Plane { normal: b }) => near(a, b),
+            (Self::Ball { offset: a, side: x }, Self::Ball { offset: b, side: y }) => near(a, b) && x == y,
+            (Self::Cylinder { axis: a, offset: x, side: u }, Self::Cylinder { axis: b, offset: y, side: v }) => {
+                (near(a, b) || near(a, &scaled(b, -1.0))) && near(x, y) && u == v
+            }
+            (
+                Self::Curve { curve: a, section: first, offset: x, side: u, .. },
+                Self::Curve { curve: b, section: second, offset: y, side: v, .. },
+            ) => {
+                let same_plane = first.iter().zip(second).all(|(first, second)| near(first, second));
+                (Arc::ptr_eq(a, b) || a == b) && same_plane && near(x, y) && u == v
+            }
+            (
+                Self::Polyhedron { surface: a, offset: x, side: u, .. },
+                Self::Polyhedron { surface: b, offset: y, side: v, .. },
+            ) => a == b && near(x, y) && u == v,
+            (
+                Self::Plane { .. }
+                | Self::Ball { .. }
+                | Self::Cylinder { .. }
+                | Self::Curve { .. }
+                | Self::Polyhedron { .. },
+                _,
+            ) => false,
         }
     }
 }

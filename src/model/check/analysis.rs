@@ -1,6 +1,6 @@
 //! Checks the settings of the analysis.
 
-use crate::model::check::numbers;
+use crate::model::check::scope::numbers;
 use crate::model::input::limits::{
     MAX_DENSE_UNKNOWNS, MAX_DESIRED_ITERATIONS, MAX_EXPLORE_DEPTH, MAX_EXPLORE_JOBS, MAX_INCREMENTS, MAX_JUMP_STEPS,
     MAX_MODES, MAX_UNKNOWNS, MIN_JUMP_TOLERANCE,

@@ -1,7 +1,7 @@
 //! Checks beams.
 
-use crate::model::check::numbers::{self, difference, largest, norm};
 use crate::model::check::scope::Scope;
+use crate::model::check::scope::numbers::{self, difference, largest, norm};
 use crate::model::check::structure::distinct_nodes;
 use crate::model::input::limits::COINCIDENCE_TOLERANCE;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};

@@ -2,13 +2,13 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::model::check::numbers::{self, dot};
-use crate::model::check::obstacles::{Curves, Facing, facing};
+use crate::model::check::obstacles::{Facing, SoundObstacle};
 use crate::model::check::scope::Scope;
+use crate::model::check::scope::numbers::{self, dot};
 use crate::model::input::limits::MAX_COUPLED_PAIRS;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{quoted, suggestion};
-use crate::model::request::{Contact, Model, Obstacle, Polyline, Side, Stage, Surface};
+use crate::model::request::{Contact, Model, Obstacle, Polyline, RoundedBox, Side, Stage, Surface, TriangleMesh};
 use crate::model::solids::contact_surfaces::ContactSurfaces;
 use crate::model::solids::middle_nodes;
 use crate::resources::budget;
@@ -27,7 +27,7 @@ struct Gap<'a> {
     tolerance: f64,
 }
 
-pub(super) fn contacts(scope: &Scope, curves: &Curves, mistakes: &mut Mistakes) {
+pub(super) fn contacts(scope: &Scope, obstacles: &[Option<SoundObstacle>], mistakes: &mut Mistakes) {
     let at = scope.at.member("contacts");
     let mut seen = HashSet::new();
     let mut gaps: HashMap<usize, Vec<Gap>> = HashMap::new();
@@ -75,7 +75,8 @@ pub(super) fn contacts(scope: &Scope, curves: &Curves, mistakes: &mut Mistakes) 
         if contact.friction > 0.0 && scope.turning.contains_key(contact.obstacle.as_str()) {
             dragged_by_turning(scope, contact, node, &at.member("friction"), mistakes);
         }
-        let Some(facing) = facing(scope, node, obstacle, curves[number].as_ref()) else { continue };
+        let sound = obstacles.get(number).and_then(Option::as_ref);
+        let Some(facing) = sound.and_then(|sound| sound.facing(scope, node)) else { continue };
         if !useful(scope, contact, node, obstacle, &facing, &at, mistakes) {
             continue;
         }
@@ -195,9 +196,15 @@ fn useful(
         Obstacle::Polyline(_) if gap.abs() <= *tolerance && !along(CLEARLY) => {
             "touches the polyline where it cannot move freely along the normal; move it, or leave the contact out"
         }
-        Obstacle::Plane { .. } | Obstacle::Ball { .. } | Obstacle::Cylinder { .. } | Obstacle::Polyline(_) => {
-            return true;
+        Obstacle::Box(_) | Obstacle::TriangleMesh(_) if gap.abs() <= *tolerance && !along(CLEARLY) => {
+            "touches the obstacle where it cannot move freely along the normal; move it, or leave the contact out"
         }
+        Obstacle::Plane { .. }
+        | Obstacle::Ball { .. }
+        | Obstacle::Cylinder { .. }
+        | Obstacle::Polyline(_)
+        | Obstacle::Box(_)
+        | Obstacle::TriangleMesh(_) => return true,
     };
     mistakes.add(&at.member("node"), || format!("the node {} is supported and {why}", quoted(&contact.node)));
     false
@@ -217,6 +224,10 @@ fn start(contact: &Contact, obstacle: &Obstacle, facing: &Facing, at: &DocumentP
                 Obstacle::Ball { side: Side::Inside, .. } => "outside the ball",
                 Obstacle::Cylinder { side: Side::Outside, .. } => "inside the cylinder",
                 Obstacle::Cylinder { side: Side::Inside, .. } => "outside the cylinder",
+                Obstacle::Box(RoundedBox { side: Side::Outside, .. }) => "inside the box",
+                Obstacle::Box(_) => "outside the box",
+                Obstacle::TriangleMesh(TriangleMesh { side: Side::Outside, .. }) => "inside the triangle mesh",
+                Obstacle::TriangleMesh(_) => "outside the triangle mesh",
             };
             let turn = match obstacle {
                 Obstacle::Polyline(Polyline { closed: false, .. }) => {

@@ -1,7 +1,7 @@
 //! Checks what a stage multiplies by its load factor: forces, displacements of supports, motions of obstacles.
 
-use crate::model::check::numbers::{self, dot, largest, norm};
 use crate::model::check::scope::Scope;
+use crate::model::check::scope::numbers::{self, dot, largest, norm};
 use crate::model::check::solids;
 use crate::model::check::structure::COMPONENT_NAMES;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
@@ -233,8 +233,9 @@ fn rotations(scope: &Scope, around: &Surroundings, stage: &Stage, at: &DocumentP
             }
         }
         let Some((number, obstacle)) = found else { continue };
-        if rotation.about.is_none() && matches!(obstacle, Obstacle::Polyline(_)) {
-            mistakes.add(&at, || "a polyline turns about a point that is given; `about` is expected");
+        let has_no_point = matches!(obstacle, Obstacle::Polyline(_) | Obstacle::TriangleMesh(_));
+        if rotation.about.is_none() && has_no_point {
+            mistakes.add(&at, || "polylines and triangle meshes turn about a point that is given; `about` is expected");
         }
         let has_axis = rotation.axis.is_some() || matches!(obstacle, Obstacle::Cylinder { .. });
         if dimension == 3 && !has_axis {
@@ -279,7 +280,7 @@ fn turns_onto_itself(obstacle: &Obstacle, pivot: &ObstaclePivot) -> bool {
         Obstacle::Ball { center, .. } => away(center) == 0.0,
         Obstacle::Cylinder { point, axis, .. } => is_along(axis) && away(point) == 0.0,
         Obstacle::Plane { normal, .. } => normal.len() == 3 && is_along(normal),
-        Obstacle::Polyline(_) => false,
+        Obstacle::Polyline(_) | Obstacle::Box(_) | Obstacle::TriangleMesh(_) => false,
     }
 }
 
@@ -294,6 +295,6 @@ fn slides_along(obstacle: &Obstacle, motion: &[f64]) -> bool {
             let off = |(motion, axis): (&f64, &f64)| motion - along * (axis / length);
             norm(&motion.iter().zip(axis).map(off).collect::<Vec<f64>>()) <= ALONG * norm(motion)
         }
-        Obstacle::Ball { .. } | Obstacle::Polyline(_) => false,
+        Obstacle::Ball { .. } | Obstacle::Polyline(_) | Obstacle::Box(_) | Obstacle::TriangleMesh(_) => false,
     }
 }

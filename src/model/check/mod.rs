@@ -8,7 +8,6 @@ mod beams;
 mod contacts;
 mod loads;
 mod mechanism;
-mod numbers;
 mod obstacles;
 pub(crate) mod scope;
 mod solids;
@@ -21,9 +20,7 @@ mod tests;
 use crate::model::check::scope::{Scope, printable};
 pub use study::study;
 
-use crate::model::input::limits::{
-    MAX_CONTACTS, MAX_ELEMENTS, MAX_NODES, MAX_OBSTACLES, MAX_POINTS_OF_POLYLINES, MAX_STAGES, MAX_UNKNOWNS,
-};
+use crate::model::input::limits::{MAX_CONTACTS, MAX_ELEMENTS, MAX_NODES, MAX_OBSTACLES, MAX_STAGES, MAX_UNKNOWNS};
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::{InputErrors, JobRequest, Model};
 
@@ -65,12 +62,7 @@ fn sizes(model: &Model, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
             mistakes.add(&at.member(field), || format!("found {found} {field}; at most {limit} are taken"));
         }
     }
-    let points = obstacles::points_of_polylines(model);
-    if points > MAX_POINTS_OF_POLYLINES {
-        mistakes.add(&at.member("obstacles"), || {
-            format!("the polylines have {points} points; at most {MAX_POINTS_OF_POLYLINES} are taken: leave some out")
-        });
-    }
+    obstacles::sizes(model, at, mistakes);
     mistakes.count() == before
 }
 
@@ -106,8 +98,8 @@ fn model(model: &Model, at: &DocumentPlace, mistakes: &mut Mistakes) -> usize {
     structure::elements(&scope, mistakes);
     solids::one_meaning_of_forces(&scope, mistakes);
     solids::surfaces(&scope, mistakes);
-    let curves = obstacles::obstacles(&scope, mistakes);
-    contacts::contacts(&scope, &curves, mistakes);
+    let obstacles = obstacles::obstacles(&scope, mistakes);
+    contacts::contacts(&scope, &obstacles, mistakes);
     mechanism::mechanism(&scope, mistakes);
     stages::stages(&scope, mistakes);
     unknowns(&scope, mistakes)

@@ -3,7 +3,7 @@
 use crate::mechanics::structure::elements::solid::SolidElementError;
 use crate::mechanics::structure::elements::solid::any::{AnySolid, SolidData};
 use crate::mechanics::structure::elements::solid::shapes::kind::SolidKind;
-use crate::model::check::numbers;
+use crate::model::check::scope::numbers;
 use crate::model::check::scope::{Scope, proper_name};
 use crate::model::check::structure::distinct_nodes;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use crate::model::check::loads::{self, Surroundings, loads};
-use crate::model::check::numbers;
+use crate::model::check::scope::numbers;
 use crate::model::check::scope::{Scope, proper_name};
 use crate::model::check::structure::{component, component_name};
 use crate::model::input::limits::MAX_TURNS;

@@ -2,7 +2,7 @@
 
 use crate::model::check::beams;
 use crate::model::check::loads;
-use crate::model::check::numbers::{self, difference, largest, norm};
+use crate::model::check::scope::numbers::{self, difference, largest, norm};
 use crate::model::check::scope::{Scope, proper_name};
 use crate::model::check::solids;
 use crate::model::input::limits::{COINCIDENCE_TOLERANCE, SYMMETRY_TOLERANCE};

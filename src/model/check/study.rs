@@ -1,7 +1,7 @@
 //! Checks the settings of a study and the amount of its work.
 
 use crate::model::InputErrors;
-use crate::model::check::numbers;
+use crate::model::check::scope::numbers;
 use crate::model::input::limits::{
     MAX_INCREMENTS, MAX_STUDY_REFINEMENT, MAX_STUDY_REPEATS, MAX_STUDY_RUNGS, MAX_STUDY_VALUES,
 };

@@ -1,8 +1,8 @@
 //! Reads obstacles.
 
-use crate::model::decode::reader::{Choices, Fields, Input, boolean, number, numbers};
+use crate::model::decode::reader::{Choices, Fields, Input, boolean, count, number, numbers};
 use crate::model::input::mistakes::Mistakes;
-use crate::model::request::{Obstacle, Polyline, Section, Side};
+use crate::model::request::{Obstacle, Polyline, RoundedBox, Section, Side, TriangleMesh};
 
 const PLANE: Fields = Fields { what: "a plane", known: &["kind", "point", "normal"], later: &[] };
 
@@ -13,6 +13,12 @@ const CYLINDER: Fields = Fields { what: "a cylinder", known: &["kind", "point", 
 const POLYLINE: Fields =
     Fields { what: "a polyline", known: &["kind", "points", "closed", "rounding", "side", "section"], later: &[] };
 
+const BOX: Fields =
+    Fields { what: "a box", known: &["kind", "center", "size", "rounding", "side", "x", "y"], later: &[] };
+
+const TRIANGLE_MESH: Fields =
+    Fields { what: "a triangle mesh", known: &["kind", "points", "triangles", "rounding", "side"], later: &[] };
+
 const SECTION: Fields = Fields { what: "a section", known: &["origin", "x", "y"], later: &[] };
 
 #[derive(Debug, Clone, Copy)]
@@ -21,6 +27,8 @@ enum ObstacleKind {
     Ball,
     Cylinder,
     Polyline,
+    Box,
+    TriangleMesh,
 }
 
 const OBSTACLE_KIND: Choices<ObstacleKind> = Choices {
@@ -30,8 +38,10 @@ const OBSTACLE_KIND: Choices<ObstacleKind> = Choices {
         ("ball", ObstacleKind::Ball),
         ("cylinder", ObstacleKind::Cylinder),
         ("polyline", ObstacleKind::Polyline),
+        ("box", ObstacleKind::Box),
+        ("triangle_mesh", ObstacleKind::TriangleMesh),
     ],
-    later: &["segment", "box"],
+    later: &["segment"],
 };
 
 const SIDE: Choices<Side> = Choices {
@@ -46,6 +56,8 @@ pub(super) fn obstacle(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacl
         ObstacleKind::Ball => ball(input, mistakes),
         ObstacleKind::Cylinder => cylinder(input, mistakes),
         ObstacleKind::Polyline => polyline(input, mistakes),
+        ObstacleKind::Box => rounded_box(input, mistakes),
+        ObstacleKind::TriangleMesh => triangle_mesh(input, mistakes),
     }
 }
 
@@ -87,6 +99,42 @@ fn polyline(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {
         side: side?,
         section: section?,
     }))
+}
+
+fn rounded_box(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {
+    let object = input.object(&BOX, mistakes)?;
+    let center = object.required("center", mistakes, numbers);
+    let size = object.required("size", mistakes, numbers);
+    let rounding = object.optional("rounding", mistakes, number);
+    let side = object.with_default("side", Side::default(), mistakes, side);
+    let [x, y] = ["x", "y"].map(|name| object.optional(name, mistakes, numbers));
+    let (center, size, rounding, side) = (center?, size?, rounding?, side?);
+    Some(Obstacle::Box(RoundedBox { center, size, rounding, side, x: x?, y: y? }))
+}
+
+fn triangle_mesh(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {
+    let object = input.object(&TRIANGLE_MESH, mistakes)?;
+    let points = object.required("points", mistakes, |input, mistakes| input.list(mistakes, numbers));
+    let triangles = object.required("triangles", mistakes, |input, mistakes| input.list(mistakes, triangle));
+    let rounding = object.required("rounding", mistakes, number);
+    let side = object.with_default("side", Side::default(), mistakes, side);
+    Some(Obstacle::TriangleMesh(TriangleMesh {
+        points: points?,
+        triangles: triangles?,
+        rounding: rounding?,
+        side: side?,
+    }))
+}
+
+fn triangle(input: &Input, mistakes: &mut Mistakes) -> Option<[u32; 3]> {
+    let corners = input.list(mistakes, count)?;
+    let points: Option<Vec<u32>> = corners.iter().map(|point| u32::try_from(*point).ok()).collect();
+    let triangle = points.and_then(|points| points.try_into().ok());
+    if triangle.is_some() {
+        triangle
+    } else {
+        input.refuse("an array of the numbers of three points, counted from 0,", mistakes)
+    }
 }
 
 fn section(input: &Input, mistakes: &mut Mistakes) -> Option<Section> {

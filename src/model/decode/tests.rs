@@ -115,12 +115,21 @@ fn obstacle() -> impl Strategy<Value = Obstacle> {
     let cylinder = (numbers(), numbers(), number(), side.clone())
         .prop_map(|(point, axis, radius, side)| Obstacle::Cylinder { point, axis, radius, side });
     let section = (numbers(), numbers(), numbers()).prop_map(|(origin, x, y)| Section { origin, x, y });
+    let corners = (of(numbers()), of(numbers()));
+    let own = (numbers(), numbers(), of(number()), side.clone(), corners).prop_map(
+        |(center, size, rounding, side, (x, y))| Obstacle::Box(RoundedBox { center, size, rounding, side, x, y }),
+    );
+    let triangles = vec(any::<[u32; 3]>(), 0..3);
+    let mesh =
+        (vec(numbers(), 0..4), triangles, number(), side.clone()).prop_map(|(points, triangles, rounding, side)| {
+            Obstacle::TriangleMesh(TriangleMesh { points, triangles, rounding, side })
+        });
     let polyline = (vec(numbers(), 0..4), any::<bool>(), of(number()), of(side), of(section)).prop_map(
         |(points, closed, rounding, side, section)| {
             Obstacle::Polyline(Polyline { points, closed, rounding, side, section })
         },
     );
-    prop_oneof![plane, ball, cylinder, polyline]
+    prop_oneof![plane, ball, cylinder, polyline, own, mesh]
 }
 
 fn contact() -> impl Strategy<Value = Contact> {

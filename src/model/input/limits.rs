@@ -25,6 +25,10 @@ pub const MAX_OBSTACLES: usize = 20_000;
 pub const MAX_POLYLINE_POINTS: usize = 2_000;
 /// Points of all polylines of a model.
 pub const MAX_POINTS_OF_POLYLINES: usize = 20_000;
+/// Triangles of one triangle mesh.
+pub const MAX_MESH_TRIANGLES: usize = 20_000;
+/// Triangles of all triangle meshes of a model.
+pub const MAX_TRIANGLES_OF_MESHES: usize = 100_000;
 /// Contacts of a model.
 pub const MAX_CONTACTS: usize = 20_000;
 /// Pairs of nodes that contacts of bodies may couple: each takes some 100 bytes while the layout of the tangent is made.

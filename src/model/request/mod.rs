@@ -30,12 +30,12 @@ pub use record::{
     ContactRange, ElementReference, ForceRange, Record, RecordedContact, RecordedContacts, RecordedElements,
     RecordedSupports,
 };
-pub(crate) use structure::ObstaclePivot;
 pub use structure::{
     BendingStiffness, Component, Contact, ContactDiscretisation, ContentEncoding, DisplacementBound, ElasticConstants,
     Element, Material, MeshFile, MeshFormat, MeshGroup, Model, NamedSet, Obstacle, ObstacleRotation, PlaneCondition,
-    Polyline, Section, Side, Solid, Stage, StageControl, Surface, Units, Until,
+    Polyline, RoundedBox, Section, Side, Solid, Stage, StageControl, Surface, TriangleMesh, Units, Until,
 };
+pub(crate) use structure::{ObstaclePivot, PostedShape};
 
 /// A model and how to trace it.
 #[warn(missing_docs)]

@@ -253,6 +253,47 @@ class Model:
             obstacle["section"] = {name: plain(value) for name, value in section.items()}
         return self._obstacle(name, obstacle)
 
+    def box(
+        self,
+        name: str,
+        center: Vector,
+        size: Vector,
+        *,
+        rounding: Optional[float] = None,
+        side: str = "outside",
+        x: Optional[Vector] = None,
+        y: Optional[Vector] = None,
+    ) -> str:
+        """Adds a rectangle in the plane or a cuboid in space as obstacle, with its sides' lengths from face to face and
+        edges rounded from this distance on (a twentieth of the shortest side when absent); nodes stay `"outside"` or
+        `"inside"` of it. `x` is along its first side, and in space `y` towards its second one; along the axes when
+        absent."""
+        obstacle: Dict[str, Any] = {"kind": "box", "center": plain(center), "size": plain(size), "side": side}
+        for key, value in (("rounding", rounding), ("x", x), ("y", y)):
+            if value is not None:
+                obstacle[key] = plain(value)
+        return self._obstacle(name, obstacle)
+
+    def triangle_mesh(
+        self,
+        name: str,
+        points: Sequence[Vector],
+        triangles: Sequence[Sequence[int]],
+        rounding: float,
+        side: str = "outside",
+    ) -> str:
+        """Adds the polyhedron that triangles enclose in space as obstacle, with edges rounded from this distance on. The
+        triangles are the numbers of three points each, counted from 0; each of their sides belongs to two of them. Nodes
+        stay `"outside"` or `"inside"` of it."""
+        obstacle = {
+            "kind": "triangle_mesh",
+            "points": plain(points),
+            "triangles": plain(triangles),
+            "rounding": plain(rounding),
+            "side": side,
+        }
+        return self._obstacle(name, obstacle)
+
     def _obstacle(self, name: str, obstacle: Dict[str, Any]) -> str:
         if name in self._obstacles:
             raise ValueError(f"there is an obstacle {name!r} already")

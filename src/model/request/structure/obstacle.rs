@@ -1,7 +1,10 @@
 //! Rigid obstacles, and contacts of nodes with them.
 
 use crate::model::request::structure::polyline::Polyline;
+use crate::model::request::structure::rounded_box::RoundedBox;
+use crate::model::request::structure::triangle_mesh::TriangleMesh;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// A rigid obstacle that nodes may touch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -41,6 +44,10 @@ pub enum Obstacle {
     },
     /// A smooth curve through points, or a polygon with rounded corners, in the plane; in space straight across it.
     Polyline(Polyline),
+    /// A rectangle in the plane or a cuboid in space, with rounded edges.
+    Box(RoundedBox),
+    /// The polyhedron that triangles enclose, with rounded edges, in space.
+    TriangleMesh(TriangleMesh),
 }
 
 impl Obstacle {
@@ -92,7 +99,34 @@ impl Obstacle {
     }
 }
 
-/// On which side of a ball, a cylinder or a closed polyline the nodes are free.
+/// An obstacle as what solver and measure know: a box is the polyline or the polyhedron of its sides.
+#[derive(Debug, Clone)]
+pub(crate) enum PostedShape<'a> {
+    Plane { point: &'a [f64], normal: &'a [f64] },
+    Ball { center: &'a [f64], radius: f64, side: Side },
+    Cylinder { point: &'a [f64], axis: &'a [f64], radius: f64, side: Side },
+    Curve(Cow<'a, Polyline>),
+    Polyhedron(Cow<'a, TriangleMesh>),
+}
+
+impl Obstacle {
+    /// The shape of a well-formed obstacle in a space of so many dimensions.
+    pub(crate) fn shape(&self, dimension: usize) -> PostedShape<'_> {
+        match self {
+            Self::Plane { point, normal } => PostedShape::Plane { point, normal },
+            Self::Ball { center, radius, side } => PostedShape::Ball { center, radius: *radius, side: *side },
+            Self::Cylinder { point, axis, radius, side } => {
+                PostedShape::Cylinder { point, axis, radius: *radius, side: *side }
+            }
+            Self::Polyline(polyline) => PostedShape::Curve(Cow::Borrowed(polyline)),
+            Self::Box(own) if dimension == 2 => PostedShape::Curve(Cow::Owned(own.polyline())),
+            Self::Box(own) => PostedShape::Polyhedron(Cow::Owned(own.triangles())),
+            Self::TriangleMesh(mesh) => PostedShape::Polyhedron(Cow::Borrowed(mesh)),
+        }
+    }
+}
+
+/// On which side of a closed obstacle the nodes are free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]

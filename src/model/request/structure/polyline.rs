@@ -95,6 +95,12 @@ impl Polyline {
         self.points.first().map_or([0.0; 2], |point| at(point))
     }
 
+    /// The largest coordinate.
+    pub(crate) fn reach(&self) -> f64 {
+        let origin = self.section.iter().flat_map(|section| &section.origin);
+        self.points.iter().flatten().chain(origin).fold(0.0, |largest, value| value.abs().max(largest))
+    }
+
     /// The curve relative to the first point, in the unit of the model.
     pub(crate) fn curve(&self) -> Result<PlaneCurve, CurveMistake> {
         let points: Vec<PlanePoint> = self.relative().collect();

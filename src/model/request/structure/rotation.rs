@@ -13,7 +13,7 @@ pub struct ObstacleRotation {
     /// Radians; counter-clockwise in the plane, right-handed about the axis in space. Multiplied by the load factor.
     pub angle: f64,
     /// The point about which the obstacle turns, or a point on the axis (length, `dimension` coordinates). Absent: the
-    /// `point` of a plane or a cylinder, the `center` of a ball; of a polyline it is required.
+    /// `point` of a plane or a cylinder, the `center` of a ball or a box; of others it is required.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub about: Option<Vec<f64>>,
     /// In space: along the axis (3 components), of any length but 0. Absent: the axis of a cylinder; of others it is required.
@@ -54,11 +54,16 @@ impl ObstacleRotation {
         let own = match obstacle {
             Obstacle::Plane { point, .. } | Obstacle::Cylinder { point, .. } => Some(point),
             Obstacle::Ball { center, .. } => Some(center),
-            Obstacle::Polyline(_) => None,
+            Obstacle::Box(own) => Some(&own.center),
+            Obstacle::Polyline(_) | Obstacle::TriangleMesh(_) => None,
         };
         let own_axis = match obstacle {
             Obstacle::Cylinder { axis, .. } => Some(axis),
-            Obstacle::Plane { .. } | Obstacle::Ball { .. } | Obstacle::Polyline(_) => None,
+            Obstacle::Plane { .. }
+            | Obstacle::Ball { .. }
+            | Obstacle::Polyline(_)
+            | Obstacle::Box(_)
+            | Obstacle::TriangleMesh(_) => None,
         };
         let axis = match dimension {
             2 => [0.0, 0.0, 1.0],

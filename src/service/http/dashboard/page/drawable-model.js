@@ -2,7 +2,7 @@
 
 import { SOLIDS } from "./structure-solids.js";
 
-const KINDS = ["plane", "ball", "cylinder", "polyline"];
+const KINDS = ["plane", "ball", "cylinder", "polyline", "box", "triangle_mesh"];
 /** The most sentences; the others are counted. */
 const SENTENCES = 8;
 
@@ -122,16 +122,32 @@ function counterpartProblem({ obstacle, against }, obstacles, surfaces) {
 }
 
 function obstacleProblem(reading, obstacle) {
-  if (!KINDS.includes(obstacle?.kind)) return "its kind has to be plane, ball, cylinder or polyline";
+  if (!KINDS.includes(obstacle?.kind)) return "its kind has to be plane, ball, cylinder, polyline, box or triangle_mesh";
   if (obstacle.kind === "ball") {
     return obstacle.radius > 0 ? reading.vectorOr(obstacle.center) : "its radius has to be a number above 0";
   }
   if (obstacle.kind === "polyline") return polylineProblem(reading, obstacle);
+  if (obstacle.kind === "box") return boxProblem(reading, obstacle);
+  if (obstacle.kind === "triangle_mesh") return meshProblem(reading, obstacle);
   if (obstacle.kind === "cylinder" && reading.dimension !== 3) return "a cylinder is an obstacle in space";
   if (obstacle.kind === "cylinder" && !(obstacle.radius > 0)) return "its radius has to be a number above 0";
   const member = obstacle.kind === "cylinder" ? "axis" : "normal";
   const isDirection = reading.isVector(obstacle[member]) && obstacle[member].some((value) => value !== 0);
   return isDirection ? reading.vectorOr(obstacle.point) : `its ${member} has to be a direction`;
+}
+
+function boxProblem(reading, { center, size, rounding, x, y }) {
+  if (!reading.isVector(size) || !size.every((side) => side > 0)) return `its size has to be ${reading.dimension} numbers above 0`;
+  if (rounding !== undefined && !(rounding > 0)) return "its rounding has to be a number above 0";
+  return [center, x, y].filter((given) => given !== undefined).map((given) => reading.vectorOr(given)).find(Boolean)
+    ?? (center === undefined ? "it has to have a center" : null);
+}
+
+function meshProblem(reading, { points, triangles }) {
+  if (reading.dimension !== 3) return "a triangle mesh is an obstacle in space";
+  if (!listOf(points).length || !points.every((point) => reading.isVector(point))) return "its points have to be 3 numbers each";
+  const isTriangle = (corners) => listOf(corners).length === 3 && corners.every((number) => Array.isArray(points[number]));
+  return listOf(triangles).length && triangles.every(isTriangle) ? null : "its triangles have to be the numbers of 3 points each";
 }
 
 const isPoint = (point) => Array.isArray(point) && point.length === 2 && point.every(Number.isFinite);

@@ -65,13 +65,18 @@ export function frame(obstacle, place, moved = []) {
     const own = frame(original, plus(pivot, into(plus(plus(place, moved, -1), pivot, -1))));
     return { normal: outOf(own.normal), tangents: own.tangents.map(outOf) };
   }
-  let normal;
-  if (obstacle.kind === "plane") normal = unit(obstacle.normal);
-  else if (obstacle.kind === "polyline") normal = normalOfPolyline(obstacle, plus(place, moved, -1));
-  else {
-    const out = unit(fromMiddle(obstacle, place, moved));
-    normal = obstacle.side === "inside" ? times(out, -1) : out;
-  }
+  return framed(normalOf(obstacle, place, moved));
+}
+
+function normalOf(obstacle, place, moved) {
+  if (obstacle.kind === "plane") return unit(obstacle.normal);
+  if (obstacle.kind === "polyline") return normalOfPolyline(obstacle, plus(place, moved, -1));
+  const out = unit(fromMiddle(obstacle, place, moved));
+  return obstacle.side === "inside" ? times(out, -1) : out;
+}
+
+/** A normal with the tangents that belong to it. */
+export function framed(normal) {
   if (normal.length === 2) return { normal, tangents: [[normal[1], -normal[0]]] };
   // Of axes equally aligned but for round-off the first.
   const least = normal.findIndex((value) => Math.abs(value) <= Math.min(...normal.map(Math.abs)) + 1e-9);

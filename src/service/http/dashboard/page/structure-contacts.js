@@ -1,15 +1,18 @@
 // Contacts in the picture of a structure: their states, their reactions in friction cones, and where they slip.
 
-import { frame, vector } from "./geometry.js";
+import { frame, framed, vector } from "./geometry.js";
 import { fromSheet } from "./plot-style.js";
 import { counterpart } from "./quantities.js";
 import { contactWords } from "./structure-nodes.js";
+import { normalOfMesh } from "./triangle-mesh.js";
 
 const { plus, times, dot, cross, length, unit } = vector;
 /** Lengths of arrows and cones, as parts of the extent. */
 const ARROW = 0.22;
 const CONE = 0.16;
 const SLIP = 0.12;
+/** Steps until normal and tangents agree with a reaction. */
+const FRAME_STEPS = 30;
 /** With more contacts than this those that are free have no mark. */
 const MARKED = 100;
 export const STATES = [["free", "circle-open", "--free"], ["stick", "square", "--stick"], ["slip", "diamond", "--slip"]];
@@ -43,8 +46,21 @@ export class ContactDrawing {
   frame(contact) {
     const { node, obstacle } = contact;
     const touched = this.model.obstacles?.[obstacle];
+    if (touched?.kind === "triangle_mesh") return this.frameOfMesh(contact, touched);
     if (touched) return frame(touched, this.now.get(node), this.moved.get(obstacle));
     return this.model.dimension === 3 ? this.frameOfFaces(contact) : frameOfReaction(contact);
+  }
+
+  /** The frame of a contact with a mesh: near its edges, which are rounded, that of which the reaction has the known parts. */
+  frameOfMesh({ node, obstacle, reaction, normal_reaction: across, tangential_reaction: along }, touched) {
+    const { original, pivot, into, outOf } = touched.turned ?? { original: touched, pivot: [0, 0, 0], into: (v) => v, outOf: (v) => v };
+    const place = plus(plus(this.now.get(node), this.moved.get(obstacle) ?? [], -1), pivot, -1);
+    let own = framed(normalOfMesh(original, plus(pivot, into(place))));
+    for (let step = 0; across > 0 && step < FRAME_STEPS; step++) {
+      const normal = own.tangents.reduce((sum, tangent, which) => plus(sum, tangent, -along[which]), into(reaction));
+      own = framed(unit(normal));
+    }
+    return { normal: outOf(own.normal), tangents: own.tangents.map(outOf) };
   }
 
   /** The frame of a contact of bodies in space: across the faces at the node, and along the first edge of the first of them. */

@@ -5,6 +5,7 @@ import { frame, fromMiddle, sectionAxes, vector } from "./geometry.js";
 import { planeCurve } from "./plane-curve.js";
 import { fromSheet } from "./plot-style.js";
 import { drawTurn } from "./structure-loads.js";
+import { meshEdges } from "./triangle-mesh.js";
 import { components } from "./units.js";
 
 const { plus, unit, dot, length } = vector;
@@ -13,6 +14,8 @@ const ROUND = 48;
 const SIDE = 16;
 /** Straight lines of a cylinder, and about as many of a polyline in space. */
 const RULES = 12;
+/** Edges of a triangle mesh that are drawn. */
+const MESH_EDGES = 5000;
 /** How far a part goes beyond the feet, how deep it is drawn in a plane, and half its side where no node may touch it: as parts
  *  of the extent. */
 const BEYOND = 0.2;
@@ -65,6 +68,7 @@ export class ObstacleDrawing {
   /** Draws an obstacle; answers a place on it. */
   shape(name, obstacle) {
     if (obstacle.kind === "polyline") return obstacle.section ? this.prism(name, obstacle) : this.curve(name, obstacle);
+    if (obstacle.kind === "triangle_mesh") return this.mesh(name, obstacle);
     if (!this.extent.isWhole(obstacle)) return this.part(name, obstacle);
     return obstacle.kind === "ball" ? this.ball(name, obstacle) : this.cylinder(name, obstacle);
   }
@@ -188,6 +192,18 @@ export class ObstacleDrawing {
       .map((number) => edges.map((edge) => edge[number]));
     traces.lines("obstacle", [...edges, ...rules], this.line, name);
     return at(shown[Math.floor(shown.length / 2)], middle);
+  }
+
+  /** The edges of a triangle mesh; answers its middle. */
+  mesh(name, obstacle) {
+    const { traces } = this;
+    const moved = this.moved.get(name) ?? [];
+    const edges = meshEdges(obstacle);
+    const shown = edges.slice(0, MESH_EDGES);
+    if (shown.length < edges.length) this.detail.leave(`${edges.length - shown.length} edges of the obstacle “${name}” are not drawn`);
+    traces.lines("obstacle", shown.map((edge) => edge.map((place) => plus(place, moved))), this.line, name);
+    const sum = obstacle.points.reduce((total, place) => plus(total, place), [0, 0, 0]);
+    return plus(sum.map((value) => value / obstacle.points.length), moved);
   }
 
   /** A cylinder all round, as far along as its feet need; answers the middle of its axis. */

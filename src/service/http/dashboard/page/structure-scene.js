@@ -1,5 +1,6 @@
 // The pictures of the structure of one path, which have their extent, the lengths of their arrows and their colours in common.
 
+import { withSides } from "./box-sides.js";
 import { nothingDrawn } from "./structure-drawing.js";
 import { Detail } from "./structure-detail.js";
 import { StructureExtent } from "./structure-extent.js";
@@ -11,7 +12,7 @@ export class StructureScene {
   /** `path`: with an id and a request, and columns where there are increments; `exaggeration`: of the displacements. */
   constructor(path, exaggeration) {
     this.path = path;
-    this.model = path.request.model;
+    this.model = withSides(path.request.model);
     this.detail = new Detail(this.model);
     this.largest = nothingDrawn();
     this.renew(exaggeration);

@@ -8,12 +8,12 @@ fn is_sane(value: f64) -> bool {
 }
 
 /// Whether the vector has the given length and only accepted numbers.
-pub(super) fn well_formed(values: &[f64], length: usize) -> bool {
+pub(in crate::model::check) fn well_formed(values: &[f64], length: usize) -> bool {
     values.len() == length && values.iter().all(|&value| is_sane(value))
 }
 
 /// Notes a number that is not finite, too large or too small.
-pub(super) fn number(value: f64, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
+pub(in crate::model::check) fn number(value: f64, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
     let sane = is_sane(value);
     if !sane {
         mistakes.add(at, || {
@@ -30,7 +30,7 @@ pub(super) fn number(value: f64, at: &DocumentPlace, mistakes: &mut Mistakes) ->
 }
 
 /// Also notes a number that is not above 0.
-pub(super) fn positive(value: f64, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
+pub(in crate::model::check) fn positive(value: f64, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
     let sane = number(value, at, mistakes);
     if sane && value <= 0.0 {
         mistakes.add(at, || format!("found {value:?}; a number above 0 is expected"));
@@ -39,7 +39,7 @@ pub(super) fn positive(value: f64, at: &DocumentPlace, mistakes: &mut Mistakes) 
 }
 
 /// Notes a count of 0 or above `limit`.
-pub(super) fn count(value: u64, limit: u64, at: &DocumentPlace, mistakes: &mut Mistakes) {
+pub(in crate::model::check) fn count(value: u64, limit: u64, at: &DocumentPlace, mistakes: &mut Mistakes) {
     if value == 0 {
         mistakes.add(at, || "found 0; 1 or more is expected");
     } else if value > limit {
@@ -48,7 +48,12 @@ pub(super) fn count(value: u64, limit: u64, at: &DocumentPlace, mistakes: &mut M
 }
 
 /// Notes a wrong length and every number that is not accepted.
-pub(super) fn vector(values: &[f64], dimension: usize, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
+pub(in crate::model::check) fn vector(
+    values: &[f64],
+    dimension: usize,
+    at: &DocumentPlace,
+    mistakes: &mut Mistakes,
+) -> bool {
     let right_length = values.len() == dimension;
     if !right_length {
         let found = values.len();
@@ -61,19 +66,24 @@ pub(super) fn vector(values: &[f64], dimension: usize, at: &DocumentPlace, mista
     right_length && sane
 }
 
-pub(super) fn dot(left: &[f64], right: &[f64]) -> f64 {
+pub(in crate::model::check) fn dot(left: &[f64], right: &[f64]) -> f64 {
     left.iter().zip(right).map(|(left, right)| left * right).sum()
 }
 
 /// Euclidean length; within the accepted magnitudes the squares neither overflow nor underflow.
-pub(super) fn norm(values: &[f64]) -> f64 {
+pub(in crate::model::check) fn norm(values: &[f64]) -> f64 {
     dot(values, values).sqrt()
 }
 
-pub(super) fn difference(left: &[f64], right: &[f64]) -> Vec<f64> {
+pub(in crate::model::check) fn difference(left: &[f64], right: &[f64]) -> Vec<f64> {
     left.iter().zip(right).map(|(left, right)| left - right).collect()
 }
 
-pub(super) fn largest(values: &[f64]) -> f64 {
+pub(in crate::model::check) fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest, value| value.abs().max(largest))
+}
+
+/// The vector divided by a length.
+pub(in crate::model::check) fn scaled(vector: &[f64], length: f64) -> Vec<f64> {
+    vector.iter().map(|component| component / length).collect()
 }

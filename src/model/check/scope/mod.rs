@@ -1,7 +1,8 @@
 //! The model with tables that several checks use.
 
+pub(super) mod numbers;
+
 use crate::model::Model;
-use crate::model::check::numbers;
 use crate::model::input::limits::{MAX_NAME_BYTES, PENETRATION_TOLERANCE};
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{quoted, suggestion};
