@@ -14,8 +14,8 @@ use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
 
 fn assert_on_measure(traced: &Traced, what: &str) {
+    assert_on_measure_of_state(traced, what);
     for (increment, errors) in traced.increments.iter().zip(&traced.errors) {
-        assert!(errors.largest_of_state() <= 1e-10, "{what}, increment {}: {errors:?}", increment.index);
         assert!(errors.energy <= 1e-6 && errors.strain_energy <= 1e-10, "{what}, {}: {errors:?}", increment.index);
     }
 }
@@ -296,5 +296,69 @@ fn assert_same(one: &[Increment], other: &[Increment], what: &str) {
             (b.load_factor, &b.displacements, &b.contacts),
             "{what}"
         );
+    }
+}
+
+/// A tip posted on the face of a turned box, held by a spring and a bar straight out of it and pressed on, stays where it is:
+/// displacements and works are round-off of the box's coordinates, which says nothing about the steps.
+#[test]
+fn a_tip_posted_on_the_face_of_a_turned_box_stays_there() {
+    for turn in 0..24 {
+        let (sine, cosine) = (0.3 + 0.7 * f64::from(turn)).sin_cos();
+        let rounding = 0.02 + 0.04 * f64::from(turn);
+        let in_space = turn % 3 == 0;
+        let (along, out) = if in_space {
+            (vec![cosine, sine, 0.0], vec![-0.6 * sine, 0.6 * cosine, 0.8])
+        } else {
+            (vec![cosine, sine], vec![-sine, cosine])
+        };
+        let dimension = out.len();
+        let center = vec![0.37 * f64::from(turn); dimension];
+        let moved = |by: f64| -> Vec<f64> { center.iter().zip(&out).map(|(center, out)| center + by * out).collect() };
+        let mut own =
+            json!({"kind": "box", "center": center, "size": vec![2.0; dimension], "rounding": rounding, "x": along});
+        if in_space {
+            own["y"] = json!(out);
+        }
+        let force: Vec<f64> = out.iter().map(|part| -0.7 * part).collect();
+        let traced = judged(&typed(json!({
+            "model": {
+                "dimension": dimension,
+                "nodes": {"tip": moved(1.0), "head": moved(2.5)},
+                "supports": {"head": (&["x", "y", "z"][..dimension])},
+                "elements": [
+                    {"kind": "spring", "nodes": ["tip"], "stiffness": diagonal(&vec![1.0; dimension])},
+                    {"kind": "bar", "nodes": ["head", "tip"], "axial_stiffness": 5},
+                ],
+                "obstacles": {"block": own},
+                "contacts": [{"node": "tip", "obstacle": "block"}],
+                "stages": [{"name": "press", "forces": {"tip": force}, "until": {"load_above": 1}}],
+            },
+            "analysis": {"max_increments": 200},
+        })));
+        let what = format!("turn {turn}");
+        assert_on_measure_of_state(&traced, &what);
+        assert_eq!(traced.report.stop_reason, StopReason::StagesCompleted, "{what}");
+        let last = traced.increments.last().expect("an increment");
+        close(last.contacts[0].normal_reaction, 0.7, 1e-12, &what);
+        assert!(last.displacements["tip"].iter().all(|part| part.abs() < 1e-13), "{what}: {:?}", last.displacements);
+    }
+}
+
+fn assert_on_measure_of_state(traced: &Traced, what: &str) {
+    for (increment, errors) in traced.increments.iter().zip(&traced.errors) {
+        assert!(errors.largest_of_state() <= 1e-10, "{what}, increment {}: {errors:?}", increment.index);
+    }
+}
+
+/// A box in the plane may be rounded by half of its shortest side, whatever its axes.
+#[test]
+fn a_box_in_the_plane_may_be_rounded_all_over() {
+    for turn in 0..60 {
+        let (sine, cosine) = (0.04 * f64::from(turn)).sin_cos();
+        let own =
+            json!({"kind": "box", "center": [0.3, -1.0], "size": [1.026, 1.7], "rounding": 0.513, "x": [cosine, sine]});
+        let traced = judged(&dragged(&own, &[0.3, 0.3], 0.2, 0.2));
+        assert_eq!(traced.report.stop_reason, StopReason::StagesCompleted, "{turn}");
     }
 }

@@ -39,7 +39,7 @@ pub(super) fn rounded(
         let next = (edge + 1) % points.len();
         let (has_corner_before, has_corner_after) = (closed || edge > 0, closed || edge + 1 < count);
         let most = edges.lengths[edge] / (1 + usize::from(has_corner_before && has_corner_after)) as f64;
-        if (has_corner_before || has_corner_after) && rounding > most {
+        if (has_corner_before || has_corner_after) && rounding > most * (1.0 + COINCIDENT) {
             return Err(CurveMistake::NoRoom { point: if has_corner_after { next } else { edge }, most });
         }
         let along = edges.directions[edge];

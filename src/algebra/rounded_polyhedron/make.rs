@@ -5,6 +5,7 @@ use crate::algebra::rounded_polyhedron::polyhedron::{BoundaryEdge, FlatFace, Pol
 use crate::algebra::rounded_polyhedron::triangles::{PlacedTriangle, TriangleTree};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 
 /// Normals whose components differ by no more than this belong to one flat face: round-off of coordinates.
 const COPLANAR: f64 = 1e-12;
@@ -12,6 +13,8 @@ const COPLANAR: f64 = 1e-12;
 const LEAST_AREA: f64 = 1e-12;
 /// Least volume, relative to the cube of the farthest corner's distance from the first one.
 const LEAST_VOLUME: f64 = 1e-12;
+/// Distance from the plane of a triangle, relative to the coordinates, up to which a point may be in it.
+const CROSSES: f64 = 1e-9;
 /// Faces that the ball about a corner may meet: those of a mesh that has some five edges along the rounding.
 pub(crate) const MOST_FACES_IN_BALL: usize = 200;
 
@@ -30,6 +33,9 @@ pub enum PolyhedronMistake {
     Turned { ends: [usize; 2] },
     /// There is no volume inside.
     NoVolume,
+    /// A part of the surface that hangs together is turned against its place: what it encloses would count twice, or less
+    /// than nothing.
+    Nested { triangle: usize },
     /// A side of one triangle goes through another triangle.
     Crosses { triangles: [usize; 2] },
     /// The ball about a point meets too many faces.
@@ -57,6 +63,7 @@ pub(super) fn polyhedron(
     let points: Vec<Vector3<f64>> = points.iter().map(|point| Vector3::from(*point) / rounding).collect();
     let triangles = outwards(&points, triangles)?;
     let sides = sides(&triangles)?;
+    check_shells(&points, &triangles, &sides)?;
     let areas = triangles.iter().enumerate().map(|(number, corners)| area(&points, number, corners));
     let areas: Vec<Vector3<f64>> = areas.collect::<Result<_, _>>()?;
     let face_of = flat_faces(&areas, &sides);
@@ -132,30 +139,69 @@ fn area(points: &[Vector3<f64>], number: usize, corners: &Corners) -> Result<Vec
 /// The number of the flat face of each triangle: neighbours in one plane belong together.
 fn flat_faces(areas: &[Vector3<f64>], sides: &Sides) -> Vec<usize> {
     let normals: Vec<Vector3<f64>> = areas.iter().map(Vector3::normalize).collect();
-    let mut neighbours = vec![Vec::new(); normals.len()];
-    for triangles in sides.values() {
-        let [one, other] = [triangles[0].0, triangles[1].0];
-        if (normals[one] - normals[other]).amax() <= COPLANAR {
+    groups(normals.len(), sides, |one, other| (normals[one] - normals[other]).amax() <= COPLANAR)
+}
+
+/// The number of the group of each triangle: neighbours for which `joins` hold belong together.
+fn groups(triangles: usize, sides: &Sides, joins: impl Fn(usize, usize) -> bool) -> Vec<usize> {
+    let mut neighbours = vec![Vec::new(); triangles];
+    for beside in sides.values() {
+        let [one, other] = [beside[0].0, beside[1].0];
+        if joins(one, other) {
             neighbours[one].push(other);
             neighbours[other].push(one);
         }
     }
-    let mut face_of = vec![usize::MAX; normals.len()];
-    let mut faces = 0;
-    for first in 0..normals.len() {
-        if face_of[first] != usize::MAX {
+    let mut group_of = vec![usize::MAX; triangles];
+    let mut groups = 0;
+    for first in 0..triangles {
+        if group_of[first] != usize::MAX {
             continue;
         }
         let mut reached = vec![first];
         while let Some(triangle) = reached.pop() {
-            if face_of[triangle] == usize::MAX {
-                face_of[triangle] = faces;
+            if group_of[triangle] == usize::MAX {
+                group_of[triangle] = groups;
                 reached.extend(&neighbours[triangle]);
             }
         }
-        faces += 1;
+        groups += 1;
     }
-    face_of
+    group_of
+}
+
+/// The parts of the surface that hang together are bodies side by side, or cavities in bodies and bodies in cavities: next to
+/// each the others count 0 on its outer side, or 1 where it is a cavity.
+fn check_shells(points: &[Vector3<f64>], triangles: &[Corners], sides: &Sides) -> Result<(), PolyhedronMistake> {
+    let shell_of = groups(triangles.len(), sides, |_, _| true);
+    let shells = 1 + largest(&shell_of);
+    if shells == 1 {
+        return Ok(());
+    }
+    let mut volumes = vec![0.0; shells];
+    let origin = points[triangles[0][0]];
+    for (corners, shell) in triangles.iter().zip(&shell_of) {
+        let [a, b, c] = corners.map(|corner| points[corner] - origin);
+        volumes[*shell] += a.dot(&b.cross(&c));
+    }
+    for shell in 0..shells {
+        let Some(first) = shell_of.iter().position(|other| *other == shell) else { continue };
+        let middle = triangles[first].iter().map(|corner| points[*corner]).sum::<Vector3<f64>>() / 3.0;
+        let others = triangles.iter().zip(&shell_of).filter(|(_, other)| **other != shell);
+        let around: f64 = others.map(|(corners, _)| solid_angle(corners.map(|corner| points[corner] - middle))).sum();
+        let depth = (around / (4.0 * PI)).round();
+        if depth != if volumes[shell] > 0.0 { 0.0 } else { 1.0 } {
+            return Err(PolyhedronMistake::Nested { triangle: first });
+        }
+    }
+    Ok(())
+}
+
+/// The solid angle of a triangle, positive where it is counter-clockwise as seen from the side that is not the origin's (A. van
+/// Oosterom and J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125, doi:10.1109/TBME.1983.325207).
+fn solid_angle([a, b, c]: [Vector3<f64>; 3]) -> f64 {
+    let [p, q, r] = [a.norm(), b.norm(), c.norm()];
+    2.0 * a.dot(&b.cross(&c)).atan2(p * q * r + a.dot(&b) * r + b.dot(&c) * p + c.dot(&a) * q)
 }
 
 /// The edges between different faces; adds them to the boundaries of these.
@@ -197,15 +243,19 @@ pub(super) fn check_crossings(tree: &TriangleTree) -> Result<(), PolyhedronMista
     found.map_or(Ok(()), |triangles| Err(PolyhedronMistake::Crosses { triangles }))
 }
 
-/// Whether a line between two places goes through a triangle.
+/// Whether a line between two places goes through the inside of a triangle, from one side of it to the other by more than the
+/// round-off of coordinates: the sides of faces in one plane do not.
 fn pierces([from, to]: &[Vector3<f64>; 2], [a, b, c]: &[Vector3<f64>; 3]) -> bool {
+    let reach = [from, to, a, b, c].iter().map(|place| place.amax()).fold(0.0, f64::max);
     let volume = |places: [&Vector3<f64>; 4]| {
         let [p, q, r, s] = places;
         (q - p).cross(&(r - p)).dot(&(s - p))
     };
-    let around = [volume([from, to, a, b]), volume([from, to, b, c]), volume([from, to, c, a])];
-    let is_inside = around.iter().all(|value| *value > 0.0) || around.iter().all(|value| *value < 0.0);
-    is_inside && volume([a, b, c, from]) * volume([a, b, c, to]) < 0.0
+    let area = (b - a).cross(&(c - a)).norm();
+    let sides = [[a, b], [b, c], [c, a]].map(|[first, second]| volume([from, to, first, second]));
+    let is_inside = sides.iter().all(|value| *value > 0.0) || sides.iter().all(|value| *value < 0.0);
+    let ends = [from, to].map(|end| volume([a, b, c, end]));
+    is_inside && ends[0] * ends[1] < 0.0 && ends.iter().all(|end| end.abs() > CROSSES * reach * area)
 }
 
 /// Next to each corner there is a surface, and the ball about it meets no more faces than are taken.

@@ -216,3 +216,65 @@ fn what_makes_no_surface_is_told() {
     triangles.extend([[8, 9, 10], [8, 11, 9], [9, 11, 10], [10, 11, 8]]);
     assert!(matches!(mistake(&points, &triangles, 0.2), PolyhedronMistake::Crosses { .. }));
 }
+
+/// A mesh moved by a vector and made larger; `turned`: with its triangles the other way round.
+fn beside((points, triangles): &Mesh, factor: f64, by: [f64; 3], is_turned: bool, before: usize) -> Mesh {
+    let moved = points.iter().map(|point| std::array::from_fn(|k| point[k] * factor + by[k])).collect();
+    let number = |[a, b, c]: &[usize; 3]| {
+        [a + before, if is_turned { c } else { b } + before, if is_turned { b } else { c } + before]
+    };
+    (moved, triangles.iter().map(number).collect())
+}
+
+#[test]
+fn a_cavity_runs_the_other_way_round() {
+    let outer = beside(&box_of([1.0; 3]), 2.0, [-1.0; 3], false, 0);
+    let with = |factor: f64, by: [f64; 3], is_turned: bool| {
+        let inner = beside(&box_of([1.0; 3]), factor, by, is_turned, 8);
+        RoundedPolyhedron::new(&[outer.0.clone(), inner.0].concat(), &[outer.1.clone(), inner.1].concat(), 0.1)
+    };
+    let hollow = with(1.0, [-0.5; 3], true).unwrap();
+    hollow.check_rounding().unwrap();
+    assert!((hollow.closest([0.0, 0.0, 0.74]).distance + 0.24).abs() < 1e-14);
+    assert!((hollow.closest([0.0, 0.1, 0.0]).distance - 0.4).abs() < 1e-14);
+    assert_eq!(with(1.0, [-0.5; 3], false).unwrap_err(), PolyhedronMistake::Nested { triangle: 12 });
+    with(1.0, [1.5, 0.0, 0.0], false).unwrap().check_rounding().unwrap();
+    assert_eq!(with(1.0, [1.5, 0.0, 0.0], true).unwrap_err(), PolyhedronMistake::Nested { triangle: 12 });
+}
+
+/// Faces that are cut into many triangles do not cross, however they are turned.
+#[test]
+fn finely_cut_faces_in_oblique_planes_do_not_cross() {
+    let cuts = 4;
+    let mut numbers = std::collections::BTreeMap::new();
+    let mut points: Vec<Vector3<f64>> = Vec::new();
+    let mut number = |place: [i32; 3]| {
+        *numbers.entry(place).or_insert_with(|| {
+            points.push(Vector3::from(place.map(f64::from)) / f64::from(cuts));
+            points.len() - 1
+        })
+    };
+    let mut triangles = Vec::new();
+    for axis in 0..3 {
+        for (height, is_turned) in [(0, true), (cuts, false)] {
+            for (i, j) in (0..cuts).flat_map(|i| (0..cuts).map(move |j| (i, j))) {
+                let mut corner = |a: i32, b: i32| {
+                    let mut place = [0; 3];
+                    (place[axis], place[(axis + 1) % 3], place[(axis + 2) % 3]) = (height, i + a, j + b);
+                    number(place)
+                };
+                let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+                let halves = if is_turned { [[a, c, b], [a, d, c]] } else { [[a, b, c], [a, c, d]] };
+                triangles.extend(halves);
+            }
+        }
+    }
+    for turn in 0..30 {
+        let turn = f64::from(turn);
+        let rotation = nalgebra::Rotation3::from_euler_angles(0.7 * turn, 0.3 + 1.1 * turn, 2.3 * turn);
+        let shift = Vector3::new(3.0, -700.0, 0.1) * turn;
+        let turned: Vec<[f64; 3]> = points.iter().map(|point| (rotation * point + shift).into()).collect();
+        let surface = RoundedPolyhedron::new(&turned, &triangles, 0.1).unwrap();
+        assert_eq!(surface.check_rounding(), Ok(()), "{turn}");
+    }
+}

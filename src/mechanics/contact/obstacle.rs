@@ -84,6 +84,17 @@ impl RigidSurface {
         }
     }
 
+    /// Round-off of the distance: that of coordinates where it is measured from them, none where its change follows from the
+    /// displacement.
+    pub fn rounding(&self) -> f64 {
+        match self {
+            Self::Plane { .. } | Self::Ball { .. } | Self::Cylinder { .. } => 0.0,
+            Self::Curve { offset, before, .. } | Self::Polyhedron { offset, before, .. } => {
+                4.0 * f64::EPSILON * size(offset).max(before.abs())
+            }
+        }
+    }
+
     pub fn is_curved(&self) -> bool {
         match self {
             Self::Plane { .. } => false,

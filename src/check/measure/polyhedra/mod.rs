@@ -59,7 +59,10 @@ impl MeasuredPolyhedron {
     pub fn gap(&self, place: &MeasuredVector) -> (f64, MeasuredVector) {
         let place = place / self.rounding;
         let nearest = self.shares.nearest(&place);
-        let start = if (place - nearest).norm() < 2.0 * LONGEST { place } else { nearest };
+        let mut start = if (place - nearest).norm() < 2.0 * LONGEST { place } else { nearest };
+        if (start - nearest).norm() < ON_TRIANGLE {
+            start -= self.normal(&start) * INSIDE;
+        }
         let mut foot = self.on_surface(&start);
         for _ in 0..MOST_STEPS {
             let from = place - foot.point;
@@ -96,10 +99,6 @@ impl MeasuredPolyhedron {
     /// The point of the surface that is reached from a place along the normal.
     fn on_surface(&self, start: &MeasuredVector) -> MeasuredFoot {
         let mut point = *start;
-        let nearest = self.shares.nearest(&point);
-        if (point - nearest).norm() < ON_TRIANGLE {
-            point -= self.normal(&point) * INSIDE;
-        }
         let towards = (self.shares.nearest(&point) - point).try_normalize(0.0).unwrap_or_else(MeasuredVector::z);
         let mut longest = LONGEST;
         let mut before = 0.0_f64;

@@ -13,6 +13,8 @@ const SWEEPS: usize = 120;
 /// Parts of a piece between which the closest point is looked for.
 const SAMPLES: usize = 32;
 const HALVINGS: usize = 60;
+/// Between two corners that use up their edge, what is left of it is shorter than this part of it and has no direction.
+const NO_EDGE: f64 = 1e-12;
 
 type PlanePlace = Vector2<f64>;
 
@@ -163,7 +165,7 @@ fn rounded(points: &[PlanePlace], closed: bool, rounding: f64) -> Vec<MeasuredPi
         let start = points[edge] + along * if starts_round { rounding } else { 0.0 };
         let corner = points[(edge + 1) % count];
         let end = corner - along * if ends_round { rounding } else { 0.0 };
-        if (end - start).dot(&along) > 0.0 {
+        if (end - start).dot(&along) > NO_EDGE * (corner - points[edge]).norm() {
             pieces.push(MeasuredPiece::between(start, end, end - start, end - start));
         }
         if ends_round {

@@ -71,6 +71,9 @@ pub(super) fn mesh_fields(mesh: &TriangleMesh, dimension: usize, at: &DocumentPl
         let (found, most) = (points.len(), 3 * MAX_MESH_TRIANGLES);
         return mistakes.add(&at_points, || format!("found {found} points; at most {most} are taken"));
     }
+    if points.is_empty() {
+        return mistakes.add(&at_points, || "there are no points; the corners of the triangles are expected");
+    }
     for (number, point) in points.iter().enumerate() {
         numbers::vector(point, 3, &at_points.index(number), mistakes);
     }
@@ -122,6 +125,10 @@ fn note(mistake: PolyhedronMistake, mesh: &TriangleMesh, at: &DocumentPlace, mis
         PolyhedronMistake::NoVolume => {
             mistakes.add(&triangles, || "the triangles enclose no volume; a closed surface around one is expected");
         }
+        PolyhedronMistake::Nested { triangle } => mistakes.add(&triangles.index(triangle), || {
+            "the part of the surface to which the triangle belongs is turned against its place: bodies side by side are \
+             turned alike, a cavity in a body the other way round; exchange two corners of each of its triangles"
+        }),
         PolyhedronMistake::Crosses { triangles: [one, other] } => mistakes.add(&triangles, || {
             format!("the triangles {one} and {other} cross; a surface that does not cross itself is expected")
         }),
@@ -132,7 +139,10 @@ fn note(mistake: PolyhedronMistake, mesh: &TriangleMesh, at: &DocumentPlace, mis
             )
         }),
         PolyhedronMistake::Thin { point } => mistakes.add(&at.member("rounding"), || {
-            format!("the rounding leaves nothing of the thin part around point {point}; give a smaller one")
+            format!(
+                "around point {point} the body is thinner than the rounding leaves, or two parts of it touch; give a smaller \
+                 rounding, or join the parts"
+            )
         }),
     }
 }

@@ -41,7 +41,10 @@ pub(super) fn curve(
     match (polyline.curve(), obstacle) {
         (Ok(curve), _) => Some(curve),
         (Err(_), Obstacle::Box(_)) => {
-            mistakes.add(at, || "the box is too small beside its distance from the origin; choose other axes");
+            mistakes.add(
+                at,
+                || "the box is too small beside its distance from the origin; choose other axes or a smaller rounding",
+            );
             None
         }
         (Err(mistake), _) => {

@@ -1,7 +1,6 @@
 //! A point in the frame of a triangle: `b = a_0 + ξ_1 e_1 + ξ_2 e_2 + h n` with the edges `e_k = a_k - a_0` and the unit
 //! normal `n` of the triangle.
 
-use crate::algebra::differential::{self, Differential, WithHessian};
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size};
 
 /// Coordinates of a point in the frame of a triangle: two as parts of its edges, and the distance along the normal.
@@ -15,7 +14,6 @@ pub(super) struct Projected {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TriangleFrame {
     origin: Vector,
-    edges: [Vector; 2],
     /// The vectors `e^k` in the plane with `e^k·e_l = δ_kl`.
     dual: [Vector; 2],
     normal: Vector,
@@ -36,7 +34,7 @@ impl TriangleFrame {
         }
         let normal = scaled(&vector, 1.0 / area);
         let dual = [cross(&edges[1], &normal), cross(&normal, &edges[0])].map(|vector| scaled(&vector, 1.0 / area));
-        Some(Self { origin: corners[0], edges, dual, normal })
+        Some(Self { origin: corners[0], dual, normal })
     }
 
     pub fn project(&self, point: &Vector) -> Projected {
@@ -62,24 +60,42 @@ impl TriangleFrame {
         [corner(0), corner(1), corner(2), all]
     }
 
-    /// The second derivatives of a weighted sum of a point's coordinates, by the vectors from the first corner to the point
-    /// and to the other corners.
+    /// The second derivatives of a weighted sum of a point's coordinates, by the vectors `d` from the first corner to the point
+    /// and `e_1`, `e_2` to the other corners.
+    ///
+    /// With `q = δd - Σ_l ξ_l δe_l`, `p = Σ_k w_k e^k` and `g^kl = e^k·e^l` the first variations are `δξ_k = e^k·q + h Σ_l g^kl
+    /// n·δe_l` and `δh = n·q`; varied once more, with `S(u, v) = u vᵀ + v uᵀ` of linear functions of the variations,
+    ///
+    /// ```text
+    /// Σ_l S(p·δe_l, -δξ_l) + S(n·δe_l, (p·e^l) n·q - h Σ_m (p·e^m) e^l·δe_m - w_h e^l·q - w_h h/2 Σ_m g^lm n·δe_m)
+    /// ```
     pub fn second_derivatives(&self, point: &Projected, weights: &CoordinateWeights) -> [[f64; 9]; 9] {
-        let in_plane = add(&scaled(&self.edges[0], point.xi[0]), point.xi[1], &self.edges[1]);
-        let values = [add(&in_plane, point.height, &self.normal), self.edges[0], self.edges[1]];
-        let [from, first, second]: [[WithHessian<9>; 3]; 3] = std::array::from_fn(|which| {
-            std::array::from_fn(|k| WithHessian::variable(values[which][k], 3 * which + k))
-        });
-        let vector = differential::cross(&first, &second);
-        let square = differential::dot(&vector, &vector);
-        let length = square.root();
-        // ξ_1 = (d × e_2)·N/|N|², ξ_2 = (e_1 × d)·N/|N|², h = d·N/|N|
-        let one = differential::cross(&from, &second);
-        let other = differential::cross(&first, &from);
-        let weighted: [WithHessian<9>; 3] =
-            std::array::from_fn(|k| one[k].times(weights[0]) + other[k].times(weights[1]));
-        let along = differential::dot(&weighted, &vector) * square.reciprocal();
-        let across = differential::dot(&from, &vector) * length.reciprocal();
-        (along + across.times(weights[2])).hessian
+        let [first, second, by_height] = *weights;
+        let plane = add(&scaled(&self.dual[0], first), second, &self.dual[1]);
+        let along_dual = self.dual.map(|dual| dot(&plane, &dual));
+        let mut values = [[0.0; 9]; 9];
+        for (l, dual) in self.dual.iter().enumerate() {
+            let (mut change, mut turn) = ([0.0; 9], [0.0; 9]);
+            for k in 0..3 {
+                change[k] = -dual[k];
+                turn[k] = along_dual[l] * self.normal[k] - by_height * dual[k];
+                for m in 0..2 {
+                    let raised = point.height * dot(dual, &self.dual[m]) * self.normal[k];
+                    change[3 + 3 * m + k] = point.xi[m] * dual[k] - raised;
+                    turn[3 + 3 * m + k] =
+                        -point.xi[m] * turn[k] - point.height * along_dual[m] * dual[k] - 0.5 * by_height * raised;
+                }
+            }
+            for (vector, other) in [(&plane, &change), (&self.normal, &turn)] {
+                for (k, part) in vector.iter().enumerate() {
+                    let at = 3 + 3 * l + k;
+                    for (column, value) in other.iter().enumerate() {
+                        values[at][column] += part * value;
+                        values[column][at] += part * value;
+                    }
+                }
+            }
+        }
+        values
     }
 }
