@@ -76,7 +76,7 @@ class Building(unittest.TestCase):
         model = arcslip.Model(3)
         model.box("block", (0, 0, -1), (4, 4, 2), rounding=0.2, x=(1, 1, 0), y=(-1, 1, 0))
         points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
-        model.triangle_mesh("tip", points, [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)], 0.1, side="inside")
+        model.triangle_mesh("tip", points, [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)], rounding=0.1, side="inside")
         self.assertEqual(model.request()["model"]["obstacles"], {
             "block": {
                 "kind": "box", "center": [0, 0, -1], "size": [4, 4, 2], "side": "outside", "rounding": 0.2,
@@ -91,6 +91,21 @@ class Building(unittest.TestCase):
         self.assertEqual(flat.box("step", (0, 0), (2, 1)), "step")
         step = {"kind": "box", "center": [0, 0], "size": [2, 1], "side": "outside"}
         self.assertEqual(flat.request()["model"]["obstacles"], {"step": step})
+
+    @unittest.skipIf(numpy is None, "numpy and meshio are not installed")
+    def test_a_triangle_mesh_of_a_file(self):
+        points = numpy.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+        triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "die.stl")
+            meshio.write(file, meshio.Mesh(points, [("triangle", numpy.array(triangles))]))
+            model = arcslip.Model(3)
+            model.triangle_mesh("die", file, rounding=0.1)
+        die = model.request()["model"]["obstacles"]["die"]
+        # A file of triangles repeats their corners; points at one place are one point.
+        self.assertEqual((len(die["points"]), len(die["triangles"])), (4, 4))
+        with self.assertRaisesRegex(ValueError, "no cells `triangle`"):
+            model.triangle_mesh("none", meshio.Mesh(points, [("line", numpy.array([[0, 1]]))]), rounding=0.1)
 
     def test_a_request_is_a_copy(self):
         model = arcslip.Model(2)

@@ -277,14 +277,22 @@ class Model:
     def triangle_mesh(
         self,
         name: str,
-        points: Sequence[Vector],
-        triangles: Sequence[Sequence[int]],
+        points: Any,
+        triangles: Optional[Sequence[Sequence[int]]] = None,
+        *,
         rounding: float,
         side: str = "outside",
     ) -> str:
         """Adds the polyhedron that triangles enclose in space as obstacle, with edges rounded from this distance on. The
-        triangles are the numbers of three points each, counted from 0; each of their sides belongs to two of them. Nodes
+        triangles are the numbers of three points each, counted from 0; each of their sides belongs to two of them. In
+        place of `points` and `triangles` there may be a mesh of meshio, or a file that meshio reads, such as STL. Nodes
         stay `"outside"` or `"inside"` of it."""
+        if triangles is None:
+            mesh = _mesh_of(points)
+            found = [row for block in mesh.cells if block.type == "triangle" for row in plain(block.data)]
+            if not found:
+                raise ValueError("the mesh has no cells `triangle`")
+            points, triangles = mesh.points, found
         obstacle = {
             "kind": "triangle_mesh",
             "points": plain(points),
@@ -441,14 +449,7 @@ class Model:
         are to be ignored. Of solids `more` is what `solid` takes, such as `plane="strain"`; named sets of points and
         cells, gmsh's physical groups among them, become sets and surfaces, and points of no cell are left out.
         """
-        if isinstance(mesh, (str, os.PathLike)):
-            import meshio
-
-            try:
-                mesh = meshio.read(mesh)
-            except SystemExit as error:
-                # It ends the program where it finds what it does not know, such as texts in files for ParaView.
-                raise ValueError(f"meshio cannot read {os.fspath(mesh)!r}") from error
+        mesh = _mesh_of(mesh)
         if material is not None and axial_stiffness is None:
             return _solids_of(cls, mesh, dimension, prefix, material, more)
         if material is not None or axial_stiffness is None:
@@ -477,6 +478,19 @@ class Model:
     def __repr__(self) -> str:
         counts = f"{len(self._nodes)} nodes, {len(self._elements)} elements, {len(self._contacts)} contacts"
         return f"<Model in {self.dimension}D: {counts}, stages {[stage['name'] for stage in self._stages]}>"
+
+
+def _mesh_of(mesh: Any) -> Any:
+    """A mesh of meshio as it is; of a file, what meshio reads."""
+    if not isinstance(mesh, (str, os.PathLike)):
+        return mesh
+    import meshio
+
+    try:
+        return meshio.read(mesh)
+    except SystemExit as error:
+        # It ends the program where it finds what it does not know, such as texts in files for ParaView.
+        raise ValueError(f"meshio cannot read {os.fspath(mesh)!r}") from error
 
 
 #: Kinds of solids and the dimension of each, by the names of meshio.

@@ -291,9 +291,9 @@ fn by_places(parts: &[CoveredPart<'_>], means: &NodalMeans, along: &Vector, loca
         }
     }
     for (at, gradient) in gradients.iter().enumerate().filter(|(_, gradient)| !gradient.is_empty()) {
-        let mut row = local.zeros();
-        row[3 * at..3 * at + 3].copy_from_slice(along);
-        local.add_product(1.0, gradient, &row);
+        for (entries, part) in local.values.chunks_exact_mut(local.size).zip(gradient) {
+            (0..3).for_each(|k| entries[3 * at + k] += part * along[k]);
+        }
     }
 }
 
