@@ -184,13 +184,13 @@ fn check_shells(points: &[Vector3<f64>], triangles: &[Corners], sides: &Sides) -
         let [a, b, c] = corners.map(|corner| points[corner] - origin);
         volumes[*shell] += a.dot(&b.cross(&c));
     }
-    for shell in 0..shells {
+    for (shell, volume) in volumes.iter().enumerate() {
         let Some(first) = shell_of.iter().position(|other| *other == shell) else { continue };
         let middle = triangles[first].iter().map(|corner| points[*corner]).sum::<Vector3<f64>>() / 3.0;
         let others = triangles.iter().zip(&shell_of).filter(|(_, other)| **other != shell);
         let around: f64 = others.map(|(corners, _)| solid_angle(corners.map(|corner| points[corner] - middle))).sum();
         let depth = (around / (4.0 * PI)).round();
-        if depth != if volumes[shell] > 0.0 { 0.0 } else { 1.0 } {
+        if depth != if *volume > 0.0 { 0.0 } else { 1.0 } {
             return Err(PolyhedronMistake::Nested { triangle: first });
         }
     }
