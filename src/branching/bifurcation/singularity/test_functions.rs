@@ -127,8 +127,9 @@ fn count_sparse(
         return Some(None);
     }
     let matrix = matrix::assemble_sparse(&system, &system.iterate(state.clone()), Kind::Rates)?;
-    // The signs of the pivots of a symmetric part would say nothing; the sign of the determinant still does.
-    if loading.structure.has_following_loads() && !matrix.is_symmetric() {
+    // Under loads that follow, and where bodies rub against each other, the signs of the pivots of a symmetric part would
+    // say nothing; the sign of the determinant still does.
+    if !matrix.is_symmetric() {
         return Some(None);
     }
     inertia_of_sparse(&system, &matrix, work).map(|inertia| Some(inertia.negative))
