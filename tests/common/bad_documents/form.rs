@@ -135,13 +135,10 @@ pub fn wrong_form() -> Vec<BadDocument> {
 }
 
 pub fn not_available() -> Vec<BadDocument> {
-    vec![
-        at(
-            "segment",
-            "/model/obstacles/floor/kind",
-            json!("segment"),
-            "`plane`, `ball`, `cylinder`, `polyline` would do",
-        ),
-        at("box", "/model/obstacles/floor/kind", json!("box"), "`plane`, `ball`, `cylinder`, `polyline` would do"),
-    ]
+    vec![at(
+        "segment",
+        "/model/obstacles/floor/kind",
+        json!("segment"),
+        "`plane`, `ball`, `cylinder`, `polyline`, `box`, `triangle_mesh` would do",
+    )]
 }

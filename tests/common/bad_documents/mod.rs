@@ -5,6 +5,7 @@
 mod form;
 mod loading;
 mod model;
+mod obstacles;
 mod record;
 mod regularised;
 
@@ -41,6 +42,8 @@ pub fn bad_documents() -> Vec<BadDocument> {
         model::contacts(),
         model::balls(),
         model::cylinders(),
+        obstacles::boxes(),
+        obstacles::triangle_meshes(),
         loading::stages(),
         loading::motions(),
         loading::ends(),
@@ -87,6 +90,9 @@ pub fn full_request() -> Value {
                 "floor": {"kind": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]},
                 "drum": {"kind": "ball", "center": [-1.5, 0, -2], "radius": 2},
                 "bowl": {"kind": "ball", "center": [3, 0, 0], "radius": 0.5, "side": "inside"},
+                "block": {"kind": "box", "center": [5, 0, 0], "size": [1, 2, 3], "rounding": 0.1, "x": [1, 1, 0], "y": [0, 1, 0]},
+                "wedge": {"kind": "triangle_mesh", "points": [[6, 0, 0], [7, 0, 0], [6, 1, 0], [6, 0, 1]],
+                    "triangles": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]], "rounding": 0.1},
             },
             "contacts": [
                 {"node": "tip", "obstacle": "floor", "friction": 0.3},

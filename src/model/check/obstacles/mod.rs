@@ -70,7 +70,7 @@ pub(super) fn obstacles<'a>(scope: &Scope<'a>, mistakes: &mut Mistakes) -> Vec<O
             _ => None,
         };
         let surface = match &shape {
-            PostedShape::Polyhedron(mesh) => Some(polyhedra::surface(mesh, &at, mistakes)?),
+            PostedShape::Polyhedron(mesh) => Some(polyhedra::surface(mesh, obstacle, &at, mistakes)?),
             _ => None,
         };
         Some(SoundObstacle { shape, curve, surface })

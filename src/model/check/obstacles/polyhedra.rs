@@ -2,11 +2,14 @@
 
 use crate::algebra::rounded_polyhedron::make::MOST_FACES_IN_BALL;
 use crate::algebra::rounded_polyhedron::{PolyhedronMistake, RoundedPolyhedron};
-use crate::model::check::obstacles::polylines::PARALLEL;
-use crate::model::check::scope::numbers::{self, dot, largest, norm, scaled};
+use crate::model::check::scope::numbers::{self, PARALLEL, dot, largest, norm, scaled};
 use crate::model::input::limits::MAX_MESH_TRIANGLES;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
-use crate::model::request::{RoundedBox, TriangleMesh};
+use crate::model::request::{Obstacle, RoundedBox, TriangleMesh};
+
+/// A box whose sides the coordinates do not resolve.
+pub(super) const TOO_FLAT: &str = "a side of the box is lost in the rounding of the coordinates, beside the others or beside \
+                                   the distance from the origin; make it longer, or move the box";
 
 pub(super) fn box_fields(own: &RoundedBox, dimension: usize, at: &DocumentPlace, mistakes: &mut Mistakes) {
     numbers::vector(&own.center, dimension, &at.member("center"), mistakes);
@@ -90,9 +93,19 @@ pub(super) fn mesh_fields(mesh: &TriangleMesh, dimension: usize, at: &DocumentPl
 }
 
 /// The surface of a mesh whose fields are right, or of a box.
-pub(super) fn surface(mesh: &TriangleMesh, at: &DocumentPlace, mistakes: &mut Mistakes) -> Option<RoundedPolyhedron> {
+pub(super) fn surface(
+    mesh: &TriangleMesh,
+    obstacle: &Obstacle,
+    at: &DocumentPlace,
+    mistakes: &mut Mistakes,
+) -> Option<RoundedPolyhedron> {
     let checked = |surface: RoundedPolyhedron| surface.check_rounding().map(|()| surface);
-    mesh.surface().and_then(checked).map_err(|mistake| note(mistake, mesh, at, mistakes)).ok()
+    match mesh.surface().and_then(checked) {
+        Ok(surface) => return Some(surface),
+        Err(_) if matches!(obstacle, Obstacle::Box(_)) => mistakes.add(at, || TOO_FLAT),
+        Err(mistake) => note(mistake, mesh, at, mistakes),
+    }
+    None
 }
 
 fn note(mistake: PolyhedronMistake, mesh: &TriangleMesh, at: &DocumentPlace, mistakes: &mut Mistakes) {

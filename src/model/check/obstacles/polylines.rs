@@ -1,13 +1,11 @@
 //! Checks polylines.
 
 use crate::algebra::plane_curve::{CurveMistake, PlaneCurve};
-use crate::model::check::scope::numbers::{self, dot, largest, norm, scaled};
+use crate::model::check::obstacles::polyhedra::TOO_FLAT;
+use crate::model::check::scope::numbers::{self, PARALLEL, dot, largest, norm, scaled};
 use crate::model::input::limits::MAX_POLYLINE_POINTS;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::request::{Obstacle, Polyline};
-
-/// Directions whose cosine differs from 1 by no more than this are parallel: an angle of some 1e-6.
-pub(super) const PARALLEL: f64 = 1e-12;
 
 pub(super) fn fields(polyline: &Polyline, dimension: usize, at: &DocumentPlace, mistakes: &mut Mistakes) {
     check_section(polyline, dimension, at, mistakes);
@@ -41,10 +39,7 @@ pub(super) fn curve(
     match (polyline.curve(), obstacle) {
         (Ok(curve), _) => Some(curve),
         (Err(_), Obstacle::Box(_)) => {
-            mistakes.add(
-                at,
-                || "the box is too small beside its distance from the origin; choose other axes or a smaller rounding",
-            );
+            mistakes.add(at, || TOO_FLAT);
             None
         }
         (Err(mistake), _) => {

@@ -3,6 +3,9 @@
 use crate::model::input::limits::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 
+/// Directions whose cosine differs from 1 by no more than this are parallel: an angle of some 1e-6.
+pub(in crate::model::check) const PARALLEL: f64 = 1e-12;
+
 fn is_sane(value: f64) -> bool {
     value == 0.0 || (MIN_MAGNITUDE..=MAX_MAGNITUDE).contains(&value.abs())
 }
