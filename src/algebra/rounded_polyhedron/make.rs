@@ -18,6 +18,11 @@ const CROSSES: f64 = 1e-9;
 /// Faces that the ball about a corner may meet: those of a mesh that has some five edges along the rounding.
 pub(crate) const MOST_FACES_IN_BALL: usize = 200;
 
+/// Parts that do not hang together: each is placed among all triangles.
+pub(crate) const MOST_PARTS: usize = 100;
+/// Pairs of triangles with overlapping boxes that are looked at for crossings: some seconds.
+const MOST_PAIRS: usize = 20_000_000;
+
 /// Why triangles make no such surface. Points and triangles are counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PolyhedronMistake {
@@ -36,6 +41,10 @@ pub enum PolyhedronMistake {
     /// A part of the surface that hangs together is turned against its place: what it encloses would count twice, or less
     /// than nothing.
     Nested { triangle: usize },
+    /// Too many parts that do not hang together.
+    ManyParts { found: usize },
+    /// The boxes of too many triangles overlap.
+    Crowded,
     /// A side of one triangle goes through another triangle.
     Crosses { triangles: [usize; 2] },
     /// The ball about a point meets too many faces.
@@ -178,6 +187,9 @@ fn check_shells(points: &[Vector3<f64>], triangles: &[Corners], sides: &Sides) -
     if shells == 1 {
         return Ok(());
     }
+    if shells > MOST_PARTS {
+        return Err(PolyhedronMistake::ManyParts { found: shells });
+    }
     let mut volumes = vec![0.0; shells];
     let origin = points[triangles[0][0]];
     for (corners, shell) in triangles.iter().zip(&shell_of) {
@@ -227,8 +239,13 @@ fn edges(points: &[Vector3<f64>], sides: &Sides, face_of: &[usize], faces: &mut 
 /// No triangle is crossed by a side of another one with which it shares no point of this side.
 pub(super) fn check_crossings(tree: &TriangleTree) -> Result<(), PolyhedronMistake> {
     let mut found: Option<[usize; 2]> = None;
+    let mut pairs = 0;
     for triangle in tree.iter() {
         for other in tree.beside(triangle) {
+            pairs += 1;
+            if pairs > MOST_PAIRS {
+                return Err(PolyhedronMistake::Crowded);
+            }
             let crosses = (0..3).any(|k| {
                 let ends = [k, (k + 1) % 3];
                 ends.iter().all(|end| !triangle.points.contains(&other.points[*end]))

@@ -242,6 +242,17 @@ fn a_cavity_runs_the_other_way_round() {
     assert_eq!(with(1.0, [1.5, 0.0, 0.0], true).unwrap_err(), PolyhedronMistake::Nested { triangle: 12 });
 }
 
+#[test]
+fn no_more_parts_are_taken_than_can_be_placed() {
+    let row = |count: usize| {
+        let bodies = (0..count).map(|k| beside(&box_of([1.0; 3]), 1.0, [2.0 * k as f64, 0.0, 0.0], false, 8 * k));
+        let (points, triangles): (Vec<_>, Vec<_>) = bodies.unzip();
+        RoundedPolyhedron::new(&points.concat(), &triangles.concat(), 0.1)
+    };
+    row(100).unwrap();
+    assert_eq!(row(101).unwrap_err(), PolyhedronMistake::ManyParts { found: 101 });
+}
+
 /// Faces that are cut into many triangles do not cross, however they are turned.
 #[test]
 fn finely_cut_faces_in_oblique_planes_do_not_cross() {

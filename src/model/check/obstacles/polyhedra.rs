@@ -1,6 +1,6 @@
 //! Checks boxes and triangle meshes.
 
-use crate::algebra::rounded_polyhedron::make::MOST_FACES_IN_BALL;
+use crate::algebra::rounded_polyhedron::make::{MOST_FACES_IN_BALL, MOST_PARTS};
 use crate::algebra::rounded_polyhedron::{PolyhedronMistake, RoundedPolyhedron};
 use crate::model::check::scope::numbers::{self, PARALLEL, dot, largest, norm, scaled};
 use crate::model::input::limits::MAX_MESH_TRIANGLES;
@@ -141,6 +141,12 @@ fn note(mistake: PolyhedronMistake, mesh: &TriangleMesh, at: &DocumentPlace, mis
         PolyhedronMistake::Nested { triangle } => mistakes.add(&triangles.index(triangle), || {
             "the part of the surface to which the triangle belongs is turned against its place: bodies side by side are \
              turned alike, a cavity in a body the other way round; exchange two corners of each of its triangles"
+        }),
+        PolyhedronMistake::ManyParts { found } => mistakes.add(&triangles, || {
+            format!("the surface has {found} parts that do not hang together; at most {MOST_PARTS} are taken: make several obstacles")
+        }),
+        PolyhedronMistake::Crowded => mistakes.add(&triangles, || {
+            "too many triangles reach past each other to look for crossings; take fewer, or cut long ones into shorter ones"
         }),
         PolyhedronMistake::Crosses { triangles: [one, other] } => mistakes.add(&triangles, || {
             format!("the triangles {one} and {other} cross; a surface that does not cross itself is expected")
