@@ -8,7 +8,8 @@ use crate::check::measure::numbers::{MeasuredVector, largest, padded};
 use crate::check::measure::obstacles::{MeasuredFrame, MeasuredObstacle};
 use crate::check::measure::solids::{MeasuredFace, SolidShares, pressed_surfaces};
 use crate::check::measure::turning::{MeasuredPivot, ObstaclePlacement};
-use crate::model::request::{Contact, JobRequest, Model, PlaneCondition};
+use crate::model::request::{Contact, JobRequest, Model};
+use crate::model::solids::data::is_revolved;
 use indexmap::{IndexMap, IndexSet};
 use std::collections::HashMap;
 use std::f64::consts::SQRT_2;
@@ -314,11 +315,6 @@ fn in_dimension(values: &MeasuredVector, dimension: usize) -> MeasuredVector {
 fn angles(stage: &crate::model::request::Stage, moving: &IndexSet<&str>) -> Vec<(usize, f64)> {
     let rotations = stage.obstacle_rotation.iter();
     rotations.filter_map(|(name, rotation)| Some((moving.get_index_of(name.as_str())?, rotation.angle))).collect()
-}
-
-fn is_revolved(model: &Model) -> bool {
-    let mut solids = model.elements.iter().filter_map(|element| element.solid());
-    solids.any(|(_, solid)| solid.plane == Some(PlaneCondition::Axisymmetric))
 }
 
 fn pattern(posted: &IndexMap<String, Vec<f64>>, number: &dyn Fn(&str) -> Option<usize>) -> PostedLoadPattern {

@@ -4,8 +4,11 @@ use crate::algebra::dense::matrix_sink::Sink;
 use crate::algebra::sparse::Bordered;
 use crate::algebra::{Factorisation, null_space};
 use crate::continuation::scene::Scene;
+use crate::continuation::scene::build;
 use crate::continuation::scene::stage_load::StageLoad;
-use crate::continuation::scene::tolerances::{ACCEPTED_IMBALANCE, CLOSED_GAP};
+use crate::continuation::scene::tolerances::{ACCEPTED_IMBALANCE, CLOSED_GAP, DRAGGED};
+use crate::mechanics::contact::ContactPair;
+use crate::mechanics::contact::frame::Sliding;
 use crate::mechanics::contact::vector::dot;
 use crate::mechanics::problem::contact_jacobian;
 use crate::mechanics::structure::Structure;
@@ -14,15 +17,15 @@ use crate::model::{InputError, InputErrors};
 use itertools::Itertools;
 use nalgebra::{DMatrix, DVector};
 
-/// Refuses friction between a supported component and an obstacle that are driven against each other: the support
-/// would bear a traction that is no unknown of the path.
+/// Refuses friction between a supported component and an obstacle, or another body, that are driven against each other: the
+/// support would bear a traction that is no unknown of the path.
 pub(super) fn refuse_dragged_supports(scene: &Scene, model: &Model) -> Result<(), InputErrors> {
     let structure = &scene.structure;
     let dimension = structure.dimension;
     for (index, one) in scene.reported.iter().enumerate() {
         let contact = &scene.contacts[one.contact];
-        let Some(node) = contact.kinematics.node() else { continue };
-        let driven = |component: usize| {
+        let of_node = contact.kinematics.node();
+        let driven = |node: usize, component: usize| {
             let freedom = structure.translations_of(node).start + component;
             let moves = |stage: &StageLoad| {
                 let support = stage.pattern.supports.get(freedom).copied().unwrap_or(0.0);
@@ -31,7 +34,11 @@ pub(super) fn refuse_dragged_supports(scene: &Scene, model: &Model) -> Result<()
             let normal = contact.frame(&[0.0; 3]).normal;
             structure.unknown_of[freedom].is_none() && normal[component].abs() < 1.0 && scene.stages.iter().any(moves)
         };
-        if model.contacts[index].friction > 0.0 && (0..dimension).any(driven) {
+        let is_dragged = match of_node {
+            Some(node) => (0..dimension).any(|component| driven(node, component)),
+            None => is_dragged_on_body(scene, contact),
+        };
+        if model.contacts[index].friction > 0.0 && is_dragged {
             return Err(InputErrors(vec![InputError::new(
                 format!("/model/contacts/{}/friction", model.posted_contact(index)),
                 format!(
@@ -44,6 +51,34 @@ pub(super) fn refuse_dragged_supports(scene: &Scene, model: &Model) -> Result<()
         }
     }
     Ok(())
+}
+
+/// Whether supports drive a node and the surface that it touches along each other in a direction in which the supports leave
+/// none of the two a motion of its own.
+fn is_dragged_on_body(scene: &Scene, contact: &ContactPair) -> bool {
+    let structure = &scene.structure;
+    let still = vec![0.0; structure.freedoms()];
+    let products = build::products_of_free_motions(structure, contact);
+    scene.stages.iter().any(|stage| {
+        let (mut moved, mut size) = ([0.0; 3], 0.0_f64);
+        contact_jacobian::each_column(structure, contact, &still, |freedom, column| {
+            let support = stage.pattern.supports.get(freedom).copied().unwrap_or(0.0);
+            moved.iter_mut().zip(column).for_each(|(sum, part)| *sum += support * part);
+            size = column.iter().fold(size, |most, part| most.max((support * part).abs()));
+        });
+        let along = match (structure.dimension, contact.sliding) {
+            (2, Sliding::None) => {
+                // What of the motion across is taken up by the one that is left moves the surfaces along each other, too.
+                let [along, across, _] = moved;
+                let [both, square] = [products[0][1], products[1][1]];
+                if square > 0.0 { (along - both / square * across).abs() } else { along.abs() }
+            }
+            (_, Sliding::None) => moved[0].hypot(moved[1]),
+            (3, Sliding::Line { across }) => dot(&across, &moved).abs(),
+            (_, Sliding::Line { .. } | Sliding::Plane) => 0.0,
+        };
+        along > DRAGGED * size
+    })
 }
 
 /// Refuses prestress and rest lengths that do not balance in the undeformed structure: a path starts at rest.

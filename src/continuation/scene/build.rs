@@ -252,14 +252,7 @@ fn between_bodies(contact: &request::Contact, body: BodyContact, structure: &Str
         friction: CoulombFriction::new(contact.friction),
         sliding: Sliding::Line { across: [0.0, 0.0, 1.0] },
     };
-    let mut products = [[0.0; 3]; 3];
-    contact_jacobian::each_column(structure, &built, &vec![0.0; structure.freedoms()], |freedom, column| {
-        if structure.unknown_of[freedom].is_some() {
-            for (row, left) in products.iter_mut().zip(column) {
-                row.iter_mut().zip(column).for_each(|(sum, right)| *sum += left * right);
-            }
-        }
-    });
+    let products = products_of_free_motions(structure, &built);
     if structure.dimension == 3 {
         built.sliding = sliding_between(&products);
     } else {
@@ -272,6 +265,19 @@ fn between_bodies(contact: &request::Contact, body: BodyContact, structure: &Str
         built.friction = CoulombFriction::new(0.0);
     }
     built
+}
+
+/// Sums of the products of the columns of free components at the start, in the axes of a contact of bodies.
+pub(super) fn products_of_free_motions(structure: &Structure, contact: &ContactPair) -> [[f64; 3]; 3] {
+    let mut products = [[0.0; 3]; 3];
+    contact_jacobian::each_column(structure, contact, &vec![0.0; structure.freedoms()], |freedom, column| {
+        if structure.unknown_of[freedom].is_some() {
+            for (row, left) in products.iter_mut().zip(column) {
+                row.iter_mut().zip(column).for_each(|(sum, right)| *sum += left * right);
+            }
+        }
+    });
+    products
 }
 
 /// The directions along which two surfaces in space can slide, by the sums of products of the columns of free components.

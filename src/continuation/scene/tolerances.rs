@@ -37,3 +37,7 @@ pub(super) const SINGLE_MOTION: f64 = 1e-16;
 /// An eigenvalue of the products of the columns of two surfaces' motion that is at most this part of the largest one belongs
 /// to a motion that supports do not leave: above the round-off of eigenvalues.
 pub(super) const MISSING_MOTION: f64 = 1e-13;
+
+/// A motion of supports along the surfaces of two bodies below this part of its columns is round-off: far above the rounding
+/// of their sums, and far below any motion that slides.
+pub(super) const DRAGGED: f64 = 1e-12;

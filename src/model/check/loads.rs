@@ -6,14 +6,15 @@ use crate::model::check::solids;
 use crate::model::check::structure::COMPONENT_NAMES;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::quoted;
-use crate::model::request::{Obstacle, ObstaclePivot, Stage};
+use crate::model::request::{Contact, Obstacle, ObstaclePivot, Stage};
+use std::collections::HashSet;
 
 /// A motion whose component along the normal is at most this part of its length is parallel to the plane.
 const ALONG: f64 = 8.0 * f64::EPSILON;
 
 /// The parts of the model on which moving supports and obstacles act, computed once for all stages.
 pub(super) struct Surroundings {
-    /// For each node, whether an element joins it to a free component.
+    /// For each node, whether an element or a contact of bodies joins it to a free component.
     driving: Vec<bool>,
     /// For each obstacle, its contacts.
     used: Vec<Use>,
@@ -41,7 +42,36 @@ fn driving(scope: &Scope) -> Vec<bool> {
             numbers.for_each(|node| driving[node] = true);
         }
     }
+    for (own, opposite) in touching(scope) {
+        let both = own.iter().chain(&opposite);
+        if both.clone().any(|node| scope.has_free_component(*node)) {
+            both.for_each(|node| driving[*node] = true);
+        }
+    }
     driving
+}
+
+/// The nodes of the surfaces, or of the nodes and the surfaces, that touch each other.
+fn touching(scope: &Scope) -> Vec<(Vec<usize>, Vec<usize>)> {
+    let number = |name: &String| scope.model.nodes.get_index_of(name);
+    let of_surface = |name: &str| -> Vec<usize> {
+        let faces = scope.model.surfaces.get(name).into_iter().flat_map(|surface| &surface.faces);
+        faces.flatten().filter_map(number).collect()
+    };
+    let mut seen = HashSet::new();
+    let bodies = scope.model.contacts.iter().filter_map(|contact| Some((contact, contact.against.as_deref()?)));
+    let own = |contact: &Contact| match contact.surface.as_deref() {
+        Some(surface) => of_surface(surface),
+        None => number(&contact.node).into_iter().collect(),
+    };
+    let mut pairs = Vec::new();
+    for (contact, against) in bodies {
+        let name = contact.surface.as_deref().unwrap_or(&contact.node);
+        if seen.insert((contact.surface.is_some(), name, against)) {
+            pairs.push((own(contact), of_surface(against)));
+        }
+    }
+    pairs
 }
 
 fn used(scope: &Scope) -> Vec<Use> {
@@ -74,7 +104,7 @@ pub(super) fn loads(scope: &Scope, around: &Surroundings, stage: &Stage, at: &Do
         let at = if only_forces && !stage.forces.is_empty() { &forces_at } else { at };
         mistakes.add(at, || {
             "the stage has no load; a force, a body force, a traction or a pressure that is not zero on a free component, a moment on a rotation that is free, a \
-             displacement of a support that an element joins to a free component, or a motion or rotation of an obstacle \
+             displacement of a support that an element or a contact of bodies joins to a free component, or a motion or rotation of an obstacle \
              against a contact (along itself only with friction) is expected"
         });
     }

@@ -11,8 +11,9 @@ use crate::mechanics::contact::kinematics::CoupledKinematics;
 use crate::mechanics::contact::vector::{Vector, add, size};
 use crate::model::input::limits::PENETRATION_TOLERANCE;
 use crate::model::input::names::quoted;
-use crate::model::request::{Contact, ContactDiscretisation, Element, Model, PlaneCondition};
+use crate::model::request::{Contact, ContactDiscretisation, Model};
 use crate::model::solids::closed_surfaces::begin_away_from_contact;
+use crate::model::solids::data::is_revolved;
 use crate::model::solids::faces::{FaceMatch, surface_faces};
 use crate::model::solids::middle_nodes::following_middles;
 use crate::resources::budget;
@@ -23,6 +24,9 @@ use std::sync::Arc;
 /// A penetration at the start of up to this part of a face's length is that of the mesh: round bodies whose meshes do not
 /// match overlap by about an eighth of the square of an angle between faces.
 const MESHED_PENETRATION: f64 = 0.05;
+
+const SIDE_OF_REVOLUTION: &str = "sides of bars, springs and beams do not touch bodies of revolution; model the part by \
+                                  axisymmetric solids";
 
 const NO_FACES: &str = "the surface has faces that are none";
 
@@ -37,6 +41,8 @@ pub(crate) struct ContactSurfaces<'a> {
     model: &'a Model,
     unit: f64,
     origin: Vector,
+    /// Whether the bodies are those of revolution.
+    is_revolved: bool,
     surfaces: HashMap<&'a str, Result<TouchedSurface, String>>,
     /// The middles of edges that follow the ends of these.
     following: BTreeMap<usize, [usize; 2]>,
@@ -103,8 +109,12 @@ impl<'a> ContactSurfaces<'a> {
             .flatten()
             .collect();
         let first = model.nodes.values().next();
-        let origin = first.map_or([0.0; 3], |place| [0, 1, 2].map(|k| place.get(k).copied().unwrap_or(0.0)));
-        let mut built = Self { model, unit, origin, surfaces: HashMap::new(), following: following_middles(model) };
+        let is_revolved = is_revolved(model);
+        let is_radius = |axis: usize| is_revolved && axis == 0;
+        let from = |place: &[f64], axis: usize| place.get(axis).copied().filter(|_| !is_radius(axis)).unwrap_or(0.0);
+        let origin = first.map_or([0.0; 3], |place| [0, 1, 2].map(|axis| from(place, axis)));
+        let (surfaces, following) = (HashMap::new(), following_middles(model));
+        let mut built = Self { model, unit, origin, is_revolved, surfaces, following };
         if !named.is_empty() {
             let all = model.surfaces.keys().zip(surface_faces(model));
             for (name, faces) in all.filter(|(name, _)| named.contains(name.as_str())) {
@@ -120,7 +130,7 @@ impl<'a> ContactSurfaces<'a> {
         built
     }
 
-    /// The position of a node from the origin, over the unit.
+    /// The position of a node from the origin, over the unit; in bodies of revolution the origin is on the axis.
     fn place(&self, node: usize) -> Vector {
         let place = self.model.nodes.get_index(node).map(|(_, place)| place.as_slice()).unwrap_or_default();
         [0, 1, 2].map(|k| place.get(k).map_or(0.0, |value| (value - self.origin[k]) / self.unit))
@@ -166,17 +176,12 @@ impl<'a> ContactSurfaces<'a> {
         for face in faces {
             match face {
                 FaceMatch::Face(face) => {
-                    let solid = self.model.elements.get(face.element).and_then(Element::solid);
-                    if solid.is_some_and(|(_, solid)| solid.plane == Some(PlaneCondition::Axisymmetric)) {
-                        return Err(
-                            "surfaces of bodies of revolution do not touch each other in this version".to_owned()
-                        );
-                    }
                     // A middle follows the ends of its edge.
                     let [first, last, ..] = face.nodes[..] else { return Err(NO_FACES.to_owned()) };
                     // Solids have their faces with the outer side on the right.
                     lines.push([last, first]);
                 }
+                FaceMatch::Side(_) if self.is_revolved => return Err(SIDE_OF_REVOLUTION.to_owned()),
                 FaceMatch::Side(nodes) => lines.push(*nodes),
                 FaceMatch::None | FaceMatch::Inside => return Err(NO_FACES.to_owned()),
             }
@@ -185,7 +190,9 @@ impl<'a> ContactSurfaces<'a> {
             lines = begin_away_from_contact(&lines, |node| self.place_in_plane(node));
         }
         let name = |node: usize| self.name(node);
-        OppositeSurface::new(&lines, |node| self.place_in_plane(node)).map_err(|error| match error {
+        let built = OppositeSurface::new(&lines, |node| self.place_in_plane(node));
+        let surface = built.map(|surface| OppositeSurface { is_revolved: self.is_revolved, ..surface });
+        surface.map_err(|error| match error {
             SurfaceError::Branches(node) => {
                 format!(
                     "{error} {}: the surface branches there; one face before and one after it are expected",

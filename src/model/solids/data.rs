@@ -40,6 +40,12 @@ pub(crate) fn idealisation(solid: &Solid, dimension: usize, unit: f64) -> Ideali
     }
 }
 
+/// Whether the solids are bodies of revolution; a model has no others beside them.
+pub(crate) fn is_revolved(model: &Model) -> bool {
+    let mut solids = model.elements.iter().filter_map(Element::solid);
+    solids.any(|(_, solid)| solid.plane == Some(PlaneCondition::Axisymmetric))
+}
+
 /// A solid of the nodes with these numbers, with lengths and forces over the units; `None` where the element makes none.
 pub(crate) fn solid(
     model: &Model,

@@ -103,14 +103,32 @@ fn what_makes_no_contact_of_bodies_is_refused_with_its_place() {
         &format!("{contact}/node"),
         &["no node of"],
     );
+    // The traction on a node that is held along the surface while that is driven would be none of the path's unknowns.
+    refused(
+        |model| {
+            for node in ["l0_0", "l1_0", "l2_0", "l3_0", "l0_1", "l1_1", "l2_1", "l3_1"] {
+                model["supports"][node] = json!(["x", "y"]);
+                model["stages"][0]["displacements"][node] = json!([0.1, 0]);
+            }
+            model["supports"]["u0_0"] = json!(["x"]);
+        },
+        &format!("{contact}/friction"),
+        &["u0_0", "driven against each other", "hold it by a spring"],
+    );
     refused(
         |model| {
             for element in model["elements"].as_array_mut().expect("elements") {
                 element["plane"] = json!("axisymmetric");
             }
+            model["nodes"]["a"] = json!([0.2, 1]);
+            model["nodes"]["b"] = json!([0.8, 1]);
+            model["elements"].as_array_mut().expect("elements").push(json!({
+                "kind": "bar", "nodes": ["a", "b"], "axial_stiffness": 1,
+            }));
+            model["surfaces"]["below"]["faces"] = json!([["a", "b"]]);
         },
         contact,
-        &["revolution"],
+        &["sides of bars", "revolution", "axisymmetric solids"],
     );
     refused(
         |model| {

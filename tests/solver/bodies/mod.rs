@@ -11,6 +11,7 @@ mod hooks;
 mod itself;
 mod quadratic_faces;
 mod random_pairs;
+mod revolution;
 mod spheres;
 mod tube;
 

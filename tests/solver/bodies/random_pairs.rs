@@ -11,8 +11,19 @@ use arcslip::resources::cancel::CancelFlag;
 use arcslip::result::increment::{Increment, Status};
 use serde_json::json;
 
-/// Two small bodies with an interface that leans and bulges a little, pressed and pushed, all in turned axes.
+/// Two small bodies in the plane, all in turned axes.
 fn random_pair(seed: u64, angle: f64) -> JobRequest {
+    posted_pair(seed, angle, None)
+}
+
+/// Two small bodies of revolution.
+pub fn revolved_pair(seed: u64) -> JobRequest {
+    posted_pair(seed, 0.0, Some(0.4))
+}
+
+/// Two small bodies with an interface that leans and bulges a little, pressed and pushed, all in turned axes; or bodies of
+/// revolution this far from the axis.
+fn posted_pair(seed: u64, angle: f64, from_axis: Option<f64>) -> JobRequest {
     let mut numbers = Numbers(seed);
     let (slope, bulge) = (numbers.between(-0.2, 0.2), numbers.between(-0.02, 0.05));
     let cells = [1 + numbers.below(3), 1 + numbers.below(3)];
@@ -23,16 +34,25 @@ fn random_pair(seed: u64, angle: f64) -> JobRequest {
     // The lower body is flat, so that no mesh overlaps the other.
     let below = move |x: f64| 1.0 + slope * x;
     let above = move |x: f64| below(x) + gap + bulge.max(0.0) * (2.0 * x - 1.0) * (2.0 * x - 1.0);
-    let lower = Sheet::new("l", [cells[0], 1], move |x, y| turned([1.4 * x - 0.2, y * below(1.4 * x - 0.2)]));
+    let placed = move |place: [f64; 2]| {
+        let [x, y] = turned(place);
+        [x + from_axis.unwrap_or(0.0), y]
+    };
+    let lower = Sheet::new("l", [cells[0], 1], move |x, y| placed([1.4 * x - 0.2, y * below(1.4 * x - 0.2)]));
     let upper = Sheet::new("u", [cells[1], 1], move |x, y| {
         let x = x + shift;
-        turned([x, above(x) + y * (2.2 - above(x))])
+        placed([x, above(x) + y * (2.2 - above(x))])
     });
     let kind = ["linear_elastic", "neo_hookean"][numbers.below(2)];
     let material = json!({"kind": kind, "young": 10, "poisson": numbers.between(0.0, 0.45)});
     let mut model = pair(&lower, &upper, &material, numbers.friction().min(1.0), numbers.chance(0.5));
     if numbers.chance(0.3) {
         model["contacts"][0]["discretisation"] = json!("node_to_surface");
+    }
+    if from_axis.is_some() {
+        for element in model["elements"].as_array_mut().expect("elements") {
+            element["plane"] = json!("axisymmetric");
+        }
     }
     support(&mut model, &lower.lowest(), &["x", "y"]);
     support(&mut model, &upper.highest(), &["x", "y"]);

@@ -32,6 +32,8 @@ pub(in crate::check::measure) struct MeasuredBodyInPlane {
     opposite: Arc<[OppositeFace]>,
     /// Undeformed places of all nodes.
     places: Arc<[MeasuredVector]>,
+    /// Whether the bodies are those of revolution, of which a point counts by its distance from the axis.
+    is_revolved: bool,
     /// Gap at the start, where it is negative: the meshes overlap, and the contact is closed.
     overlap: f64,
     /// The largest undeformed coordinate of a node that matters.
@@ -73,7 +75,8 @@ impl MeasuredBodyInPlane {
         };
         let reach = opposite.iter().flat_map(|face| face.nodes).chain([node]).map(|node| largest(&places[node]));
         let reach = reach.fold(0.0, f64::max);
-        let mut body = Self { faces, itself, node, opposite, places, overlap: 0.0, reach };
+        let is_revolved = surfaces.is_revolved;
+        let mut body = Self { faces, itself, node, opposite, places, is_revolved, overlap: 0.0, reach };
         let still = &surfaces.no_displacements;
         // Past the end of the surface there is no contact yet.
         body.overlap = if body.open_gap(still) > 0.0 { 0.0 } else { body.gap(still).min(0.0) };
@@ -326,6 +329,7 @@ impl MeasuredBodyInPlane {
                 period = face.period;
                 let shift = near(face.period, origin, face.along[0]) - face.along[0];
                 let width = to.minus(from);
+                let reference_length = PlaneNumber::constant(face.along[1] - face.along[0]);
                 for (fraction, weight) in GAUSS {
                     let s = from.plus(width.times(fraction));
                     let share = s.minus(low).over(high.minus(low));
@@ -333,7 +337,9 @@ impl MeasuredBodyInPlane {
                     let position =
                         share.times(face.along[0] - face.along[1]).plus(PlaneNumber::constant(face.along[1] + shift));
                     let shape = [PlaneNumber::constant(1.0).minus(s.over(length)), s.over(length)];
+                    let radius = shape[0].by(start[0]).plus(shape[1].by(end[0]));
                     let weight = width.times(weight);
+                    let weight = if self.is_revolved { weight.by(radius) } else { weight };
                     for k in 0..2 {
                         shares[k] = shares[k].plus(weight.by(shape[k]));
                         mass[2 * k] = mass[2 * k].plus(weight.by(shape[k]).by(shape[k]));
@@ -341,10 +347,9 @@ impl MeasuredBodyInPlane {
                         positions[k] = positions[k].plus(weight.by(shape[k]).by(position));
                     }
                     mass[1] = mass[1].plus(weight.by(shape[0]).by(shape[1]));
+                    lengths = lengths.plus(weight);
+                    undeformed = undeformed.plus(weight.by(reference_length).over(high.minus(low)));
                 }
-                lengths = lengths.plus(width);
-                let reference_length = PlaneNumber::constant(face.along[1] - face.along[0]);
-                undeformed = undeformed.plus(width.by(reference_length).over(high.minus(low)));
             }
             if shares[0].0 + shares[1].0 <= 0.0 {
                 continue;

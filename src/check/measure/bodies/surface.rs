@@ -3,6 +3,7 @@
 use crate::check::measure::numbers::{MeasuredVector, padded};
 use crate::model::request::{Element, Model, SolidKind, Surface};
 use crate::model::solids::closed_surfaces::begin_away_from_contact;
+use crate::model::solids::data::is_revolved;
 use crate::model::solids::faces::{FaceMatch, SolidFace, surface_faces};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -30,6 +31,8 @@ pub(in crate::check::measure) struct TouchedSurfaces<'a> {
     pub(super) triangles: HashMap<&'a str, Arc<[MeasuredTriangle]>>,
     /// Undeformed places of all nodes.
     pub(super) places: Arc<[MeasuredVector]>,
+    /// Whether they are those of bodies of revolution.
+    pub(super) is_revolved: bool,
     pub(super) no_displacements: Vec<MeasuredVector>,
     /// Whether a component of a node is supported.
     held: Vec<bool>,
@@ -48,6 +51,7 @@ impl<'a> TouchedSurfaces<'a> {
                 faces_in_space: HashMap::new(),
                 triangles: HashMap::new(),
                 places: Arc::new([]),
+                is_revolved: false,
                 no_displacements: Vec::new(),
                 held: Vec::new(),
             };
@@ -102,7 +106,8 @@ impl<'a> TouchedSurfaces<'a> {
         let triangles = touched.map(|(name, faces)| (*name, triangles(faces).into())).collect();
         let is_held = |name: &String| model.supports.get(name).is_some_and(|components| !components.is_empty());
         let held = model.nodes.keys().map(is_held).collect();
-        Self { lines, faces, faces_in_space, triangles, places, no_displacements, held }
+        let is_revolved = is_revolved(model);
+        Self { lines, faces, faces_in_space, triangles, places, is_revolved, no_displacements, held }
     }
 
     /// Whether a node of a face is supported.

@@ -3,30 +3,30 @@
 
 use crate::algebra::differential::WithGradient;
 use crate::mechanics::contact::bodies::face_moments::{
-    FaceAtNode, MOMENTS, MeanAtNode, OF_FACE, moments, nodal_values,
+    FaceAtNode, IN_PLANE, MOMENTS, MeanAtNode, OF_FACE, moments, nodal_values,
 };
 use crate::mechanics::contact::bodies::{PlaneVector, turned_left};
 use smallvec::SmallVec;
 
-/// A piece of the opposite surface in the frame of a face.
-pub(super) struct CoveringPiece {
+/// A piece of the opposite surface in the frame of a face, with `N` values.
+pub(super) struct CoveringPiece<const N: usize> {
     /// Its nodes, by their indices among the contact's.
     pub(super) nodes: [usize; 2],
-    /// Length of the face, then `s` and `h` of both nodes.
-    pub(super) values: [f64; 5],
+    /// Length of the face, then `s` and `h` of both nodes, in a body of revolution the radii of the face's nodes.
+    pub(super) values: [f64; N],
     pub(super) along: [f64; 2],
     /// Whether the surface ends at the first and at the last node; the piece goes on straight there.
     pub(super) goes_on: [bool; 2],
 }
 
 /// A face in its present position, with what covers it.
-pub(super) struct CoveredFace {
+pub(super) struct CoveredFace<const N: usize> {
     /// Its nodes, by their indices among the contact's.
     pub(super) nodes: [usize; 2],
     pub(super) at: FaceAtNode,
     pub(super) length: f64,
     pub(super) along: PlaneVector,
-    pub(super) pieces: SmallVec<[CoveringPiece; 4]>,
+    pub(super) pieces: SmallVec<[CoveringPiece<N>; 4]>,
 }
 
 /// All variables of up to two faces.
@@ -34,8 +34,8 @@ pub(super) const VARIABLES: usize = 2 * OF_FACE;
 
 /// Calls `each` with a node and the gradient by its position of the function whose gradient by the variables of the
 /// covered faces is `weights`; a node may come several times.
-pub(super) fn each_gradient(
-    covered: &[CoveredFace],
+pub(super) fn each_gradient<const N: usize>(
+    covered: &[CoveredFace<N>],
     weights: &[f64; VARIABLES],
     mut each: impl FnMut(usize, PlaneVector),
 ) {
@@ -43,7 +43,7 @@ pub(super) fn each_gradient(
         let by_length = weights[MOMENTS];
         face.each_of_length(|node, gradient| each(node, gradient.map(|part| by_length * part)));
         for piece in &face.pieces {
-            let mut slopes = [0.0; 5];
+            let mut slopes = [0.0; N];
             for (moment, weight) in face.moments_of(piece).iter().zip(weights) {
                 slopes.iter_mut().zip(&moment.gradient).for_each(|(sum, part)| *sum += weight * part);
             }
@@ -54,7 +54,10 @@ pub(super) fn each_gradient(
 
 /// Calls `each` with a variable of the covered faces, a node and the variable's gradient by its position, for all
 /// variables; a node may come several times.
-pub(super) fn each_variable(covered: &[CoveredFace], mut each: impl FnMut(usize, usize, PlaneVector)) {
+pub(super) fn each_variable<const N: usize>(
+    covered: &[CoveredFace<N>],
+    mut each: impl FnMut(usize, usize, PlaneVector),
+) {
     for (which, face) in covered.iter().enumerate() {
         let first = which * OF_FACE;
         face.each_of_length(|node, gradient| each(first + MOMENTS, node, gradient));
@@ -66,10 +69,10 @@ pub(super) fn each_variable(covered: &[CoveredFace], mut each: impl FnMut(usize,
     }
 }
 
-impl CoveredFace {
+impl<const N: usize> CoveredFace<N> {
     /// The moments of a piece with their gradients by the piece's values.
-    fn moments_of(&self, piece: &CoveringPiece) -> [WithGradient<5>; MOMENTS] {
-        let variables = std::array::from_fn(|k| WithGradient::variable(piece.values[k], k));
+    fn moments_of(&self, piece: &CoveringPiece<N>) -> [WithGradient<N>; MOMENTS] {
+        let variables: [_; N] = std::array::from_fn(|k| WithGradient::variable(piece.values[k], k));
         moments(&variables, piece.along, piece.goes_on, self.at.from)
     }
 
@@ -92,12 +95,12 @@ impl CoveredFace {
     /// Calls `each` with the gradient by the positions of nodes of a function of the piece's values with these slopes:
     ///
     /// ```text
-    /// ds = t·(dx - dx₁) + h/L n·(dx₂ - dx₁),   dh = n·(dx - dx₁) - s/L n·(dx₂ - dx₁),   dL = t·(dx₂ - dx₁)
+    /// ds = t·(dx - dx₁) + h/L n·(dx₂ - dx₁),   dh = n·(dx - dx₁) - s/L n·(dx₂ - dx₁),   dL = t·(dx₂ - dx₁),   dr = dx·e
     /// ```
     pub(super) fn each_coordinate(
         &self,
-        piece: &CoveringPiece,
-        slopes: &[f64; 5],
+        piece: &CoveringPiece<N>,
+        slopes: &[f64; N],
         each: &mut impl FnMut(usize, PlaneVector),
     ) {
         let (along, normal) = (self.along, turned_left(self.along));
@@ -113,6 +116,7 @@ impl CoveredFace {
         }
         each(self.nodes[0], combined(-sum_s - slopes[0], -sum_h - turning));
         each(self.nodes[1], combined(slopes[0], turning));
+        self.nodes.into_iter().zip(&slopes[IN_PLANE..]).for_each(|(node, by_radius)| each(node, [*by_radius, 0.0]));
     }
 }
 
@@ -132,7 +136,7 @@ impl MetNodes {
 }
 
 /// The gradients of gap, place and stretch by the variables of the faces.
-pub(super) fn nodal_gradients(covered: &[CoveredFace]) -> [WithGradient<VARIABLES>; 3] {
+pub(super) fn nodal_gradients<const N: usize>(covered: &[CoveredFace<N>]) -> [WithGradient<VARIABLES>; 3] {
     let faces: SmallVec<[_; 2]> = (covered.iter().enumerate())
         .map(|(which, face)| {
             let values = face.moments();

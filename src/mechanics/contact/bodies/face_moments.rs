@@ -7,6 +7,9 @@
 //! W_k = ∫ s^k ds  (k = 0, 1, 2),    F_k = ∫ h s^k ds,    S_k = ∫ S s^k ds  (k = 0, 1),    Λ = ∫ |dS/ds| ds
 //! ```
 //!
+//! In bodies of revolution the weight of a point is its distance `r` from the axis, the first coordinate: `r ds` takes the place
+//! of `ds` in all of them.
+//!
 //! They are twice differentiable in the coordinates as long as no node passes the end of the face, and once at that. An
 //! end of the opposite surface would spoil this; the last face goes on straight beyond it.
 
@@ -15,15 +18,28 @@ use crate::algebra::differential::Differential;
 /// Number of integrals of a face; the length of the face follows them among the variables of [`nodal_values`].
 pub(super) const MOMENTS: usize = 8;
 
+/// Number of values of a piece in the plane: the length of the face, then `s` and `h` of both nodes of the opposite face.
+pub(super) const IN_PLANE: usize = 5;
+
+/// Number of values of a piece in a body of revolution: the distances of the face's nodes from the axis follow.
+pub(super) const REVOLVED: usize = IN_PLANE + 2;
+
 /// The variables of a face: its moments and its length.
 pub(super) const OF_FACE: usize = MOMENTS + 1;
 
-/// The moments of one piece. `piece`: the length of the face, then `s` and `h` of the first node of the opposite face
-/// and `s` and `h` of its last one; `along`: its coordinates along the opposite surface; `from`: the position on the face
+/// The moments of one piece, of [`IN_PLANE`] or [`REVOLVED`] values. `piece`: the length of the face, then `s` and `h` of the
+/// first node of the opposite face and `s` and `h` of its last one, in a body of revolution the radii of the face's nodes;
+/// `along`: its coordinates along the opposite surface; `from`: the position on the face
 /// from which `s` is counted in the moments; `goes_on`: whether the piece goes on straight beyond its first and its last
 /// node.
-pub(super) fn moments<D: Differential>(piece: &[D; 5], along: [f64; 2], goes_on: [bool; 2], from: f64) -> [D; MOMENTS] {
-    let [length, first, first_height, last, last_height] = *piece;
+pub(super) fn moments<D: Differential, const N: usize>(
+    piece: &[D; N],
+    along: [f64; 2],
+    goes_on: [bool; 2],
+    from: f64,
+) -> [D; MOMENTS] {
+    let (plane, radii) = piece.split_at(IN_PLANE);
+    let [length, first, first_height, last, last_height] = std::array::from_fn(|k| plane[k]);
     // The opposite surface runs the other way: its last node is on the side of smaller s.
     let low = if last.value() > 0.0 && !goes_on[1] { last } else { D::constant(0.0) };
     let high = if first.value() < length.value() && !goes_on[0] { first } else { length };
@@ -36,15 +52,31 @@ pub(super) fn moments<D: Differential>(piece: &[D; 5], along: [f64; 2], goes_on:
     let place = (advance * (middle - last)).plus(along[1]);
     let middle = middle.plus(-from);
     let spread = width * width.times(1.0 / 12.0);
+    let undeformed = inverse.times(along[1] - along[0]);
+    let square = middle * middle + spread;
+    let [area, first, second] = [D::constant(1.0), middle, square].map(|mean| width * mean);
+    // ∫ f ds and ∫ f s ds of a function that is linear on the piece, by its value at the middle and its slope.
+    let of_line = |value: D, slope: D| [width * value, width * (value * middle + slope * spread)];
+    let [[heights, heights_first], [places, places_first]] = [of_line(height, rise), of_line(place, advance)];
+    let [radius_first, radius_last] = *radii else {
+        return [area, first, second, heights, heights_first, places, places_first, area * undeformed];
+    };
+    // r = r₀ + k s
+    let slope = (radius_last - radius_first) * length.reciprocal();
+    let radius = radius_first + slope.times(from);
+    let third = width * (middle * (middle * middle + spread.times(3.0)));
+    let second_of_line = |value: D, slope: D| width * (value * square + (slope * middle * spread).times(2.0));
+    let weighted = |one: D, next: D| radius * one + slope * next;
+    let area_weighted = weighted(area, first);
     [
-        width,
-        width * middle,
-        width * (middle * middle + spread),
-        width * height,
-        width * (height * middle + rise * spread),
-        width * place,
-        width * (place * middle + advance * spread),
-        (width * inverse).times(along[1] - along[0]),
+        area_weighted,
+        weighted(first, second),
+        weighted(second, third),
+        weighted(heights, heights_first),
+        weighted(heights_first, second_of_line(height, rise)),
+        weighted(places, places_first),
+        weighted(places_first, second_of_line(place, advance)),
+        area_weighted * undeformed,
     ]
 }
 

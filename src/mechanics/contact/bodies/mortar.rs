@@ -11,11 +11,16 @@
 //! frictional: M. Gitterle and others, 84, 2010), with the projection along the normals of faces, as M. A. Puso and T. A.
 //! Laursen have it (A mortar segment-to-segment contact method, Comput. Meth. Appl. Mech. Engng 193, 2004), in place of
 //! averaged normals: all integrals have closed forms.
+//!
+//! Of bodies of revolution `ds` is `r ds`, with the present distance `r` from the axis: a constant pressure on the deformed
+//! surface then has its forces exactly, as in the plane.
 
 use crate::mechanics::contact::bodies::covered_face::{
     CoveredFace, CoveringPiece, MetNodes, each_gradient, nodal_gradients,
 };
-use crate::mechanics::contact::bodies::face_moments::{FaceAtNode, MeanAtNode, OF_FACE, nodal_values};
+use crate::mechanics::contact::bodies::face_moments::{
+    FaceAtNode, IN_PLANE, MeanAtNode, OF_FACE, REVOLVED, nodal_values,
+};
 use crate::mechanics::contact::bodies::opposite_surface::{
     OppositeSurface, SurfaceFace, distance_from_segment, distance_of_segments,
 };
@@ -179,7 +184,7 @@ impl MortarNode {
     }
 
     /// The faces with what is opposite; none where no part of any is covered.
-    fn covered(&self, displacement: LocalDisplacements<'_>) -> SmallVec<[CoveredFace; 2]> {
+    fn covered<const N: usize>(&self, displacement: LocalDisplacements<'_>) -> SmallVec<[CoveredFace<N>; 2]> {
         let in_front = self.in_front(displacement);
         let faces = self.ends_of(displacement, in_front.clone());
         let mut reference: Option<f64> = None;
@@ -191,7 +196,7 @@ impl MortarNode {
             let length = product(vector, vector).sqrt();
             let along = vector.map(|part| part / length);
             let normal = turned_left(along);
-            let mut pieces: SmallVec<[CoveringPiece; 4]> = SmallVec::new();
+            let mut pieces: SmallVec<[CoveringPiece<N>; 4]> = SmallVec::new();
             let (mut area, mut centre) = (0.0, 0.0);
             for (index, ends) in in_front.clone().zip(&faces).filter(|(index, _)| self.looks_at(which, *index)) {
                 let face = &self.opposite.faces[index];
@@ -214,9 +219,10 @@ impl MortarNode {
                 let shift = from + self.opposite.way(face.chain, from, face.along[0]) - face.along[0];
                 area += width;
                 centre += width * 0.5 * (high + low);
+                let values = [length, s_first, h_first, s_last, h_last, first[0], last[0]];
                 pieces.push(CoveringPiece {
                     nodes: face.nodes.map(|node| self.local(node)),
-                    values: [length, s_first, h_first, s_last, h_last],
+                    values: std::array::from_fn(|k| values[k]),
                     along: face.along.map(|place| place + shift),
                     goes_on,
                 });
@@ -245,7 +251,15 @@ impl MortarNode {
     /// Gap, position along the opposite surface and stretch. Where nothing is opposite, the gap is the distance of the node
     /// from the surface.
     fn values(&self, displacement: LocalDisplacements<'_>) -> (f64, f64, f64) {
-        let covered = self.covered(displacement);
+        if self.opposite.is_revolved {
+            self.values_of::<REVOLVED>(displacement)
+        } else {
+            self.values_of::<IN_PLANE>(displacement)
+        }
+    }
+
+    fn values_of<const N: usize>(&self, displacement: LocalDisplacements<'_>) -> (f64, f64, f64) {
+        let covered = self.covered::<N>(displacement);
         if covered.is_empty() {
             return (self.distance_of_node(displacement), self.start.1, 1.0);
         }
@@ -253,6 +267,33 @@ impl MortarNode {
             covered.iter().map(|face| (face.at, face.moments())).collect();
         let MeanAtNode { gap, place, stretch } = nodal_values(&faces);
         (gap, place, stretch)
+    }
+
+    fn each_column_of<const N: usize>(
+        &self,
+        displacement: LocalDisplacements<'_>,
+        each: &mut dyn FnMut(usize, &Vector),
+    ) {
+        let covered = self.covered::<N>(displacement);
+        if covered.is_empty() {
+            return;
+        }
+        let [gap, place, stretch] = nodal_gradients(&covered);
+        let mut met = MetNodes::default();
+        let mut columns: SmallVec<[[PlaneVector; 2]; 12]> = SmallVec::new();
+        for (row, (weights, factor)) in [(&place, stretch.value), (&gap, 1.0)].into_iter().enumerate() {
+            each_gradient(&covered, &weights.gradient, |node, gradient| {
+                let at = met.place(node);
+                if at == columns.len() {
+                    columns.push([[0.0; 2]; 2]);
+                }
+                columns[at][row][0] += factor * gradient[0];
+                columns[at][row][1] += factor * gradient[1];
+            });
+        }
+        for (node, [along, across]) in met.nodes.iter().zip(&columns) {
+            (0..2).for_each(|k| each(2 * node + k, &[along[k], across[k], 0.0]));
+        }
     }
 
     /// The distance of the node from the opposite surface.
@@ -313,25 +354,10 @@ impl CoupledKinematics for MortarNode {
     }
 
     fn each_column(&self, displacement: LocalDisplacements<'_>, each: &mut dyn FnMut(usize, &Vector)) {
-        let covered = self.covered(displacement);
-        if covered.is_empty() {
-            return;
-        }
-        let [gap, place, stretch] = nodal_gradients(&covered);
-        let mut met = MetNodes::default();
-        let mut columns: SmallVec<[[PlaneVector; 2]; 12]> = SmallVec::new();
-        for (row, (weights, factor)) in [(&place, stretch.value), (&gap, 1.0)].into_iter().enumerate() {
-            each_gradient(&covered, &weights.gradient, |node, gradient| {
-                let at = met.place(node);
-                if at == columns.len() {
-                    columns.push([[0.0; 2]; 2]);
-                }
-                columns[at][row][0] += factor * gradient[0];
-                columns[at][row][1] += factor * gradient[1];
-            });
-        }
-        for (node, [along, across]) in met.nodes.iter().zip(&columns) {
-            (0..2).for_each(|k| each(2 * node + k, &[along[k], across[k], 0.0]));
+        if self.opposite.is_revolved {
+            self.each_column_of::<REVOLVED>(displacement, each);
+        } else {
+            self.each_column_of::<IN_PLANE>(displacement, each);
         }
     }
 
@@ -341,9 +367,11 @@ impl CoupledKinematics for MortarNode {
         force: &Vector,
         add: &mut dyn FnMut(usize, usize, f64),
     ) {
-        let covered = self.covered(displacement);
-        if !covered.is_empty() {
-            second_derivatives::each(&covered, [force[0], force[1]], add);
+        let force = [force[0], force[1]];
+        if self.opposite.is_revolved {
+            second_derivatives::each(&self.covered::<REVOLVED>(displacement), force, add);
+        } else {
+            second_derivatives::each(&self.covered::<IN_PLANE>(displacement), force, add);
         }
     }
 

@@ -15,6 +15,8 @@ pub struct OppositeSurface {
     pub faces: Vec<SurfaceFace>,
     /// The chains of faces, one after the other.
     pub chains: Vec<FaceChain>,
+    /// Whether it is that of a body of revolution, the first coordinate being the distance from the axis.
+    pub is_revolved: bool,
 }
 
 /// A straight face.
@@ -68,7 +70,8 @@ impl OppositeSurface {
                 return Err(SurfaceError::Branches(*last));
             }
         }
-        let mut surface = Self { nodes: Vec::new(), places: Vec::new(), faces: Vec::new(), chains: Vec::new() };
+        let mut surface =
+            Self { nodes: Vec::new(), places: Vec::new(), faces: Vec::new(), chains: Vec::new(), is_revolved: false };
         let mut index_of: HashMap<usize, usize> = HashMap::new();
         let mut taken = vec![false; faces.len()];
         for given in 0..faces.len() {

@@ -23,7 +23,14 @@ impl LocalMatrix {
     }
 }
 
-pub(super) fn each(covered: &[CoveredFace], [along, normal]: [f64; 2], add: &mut dyn FnMut(usize, usize, f64)) {
+pub(super) fn each<const N: usize>(
+    covered: &[CoveredFace<N>],
+    [along, normal]: [f64; 2],
+    add: &mut dyn FnMut(usize, usize, f64),
+) {
+    if covered.is_empty() {
+        return;
+    }
     let faces: SmallVec<[_; 2]> = (covered.iter().enumerate())
         .map(|(which, face)| {
             let values = face.moments();
@@ -68,7 +75,7 @@ pub(super) fn each(covered: &[CoveredFace], [along, normal]: [f64; 2], add: &mut
 }
 
 /// `Jᵀ H J` with the Jacobian `J` of the variables of the faces.
-fn by_variables(covered: &[CoveredFace], whole: &WithHessian<VARIABLES>, local: &mut LocalMatrix) {
+fn by_variables<const N: usize>(covered: &[CoveredFace<N>], whole: &WithHessian<VARIABLES>, local: &mut LocalMatrix) {
     let size = local.size;
     let count = covered.len() * OF_FACE;
     let mut jacobian = vec![0.0; count * size];
@@ -93,7 +100,7 @@ fn by_variables(covered: &[CoveredFace], whole: &WithHessian<VARIABLES>, local: 
 }
 
 /// The second derivative of the length of a face.
-fn of_length(face: &CoveredFace, weight: f64, local: &mut LocalMatrix) {
+fn of_length<const N: usize>(face: &CoveredFace<N>, weight: f64, local: &mut LocalMatrix) {
     let normal = turned_left(face.along);
     let places = face.nodes.map(|node| 2 * local.met.place(node));
     for (i, row) in places.into_iter().enumerate() {
@@ -107,17 +114,17 @@ fn of_length(face: &CoveredFace, weight: f64, local: &mut LocalMatrix) {
 }
 
 /// The second derivatives of the moments of a piece by the positions of its nodes and the face's.
-fn of_piece(face: &CoveredFace, piece: &CoveringPiece, weights: &[f64], local: &mut LocalMatrix) {
-    let variables = std::array::from_fn(|k| WithHessian::<5>::variable(piece.values[k], k));
+fn of_piece<const N: usize>(face: &CoveredFace<N>, piece: &CoveringPiece<N>, weights: &[f64], local: &mut LocalMatrix) {
+    let variables: [_; N] = std::array::from_fn(|k| WithHessian::<N>::variable(piece.values[k], k));
     let moments = moments(&variables, piece.along, piece.goes_on, face.at.from);
-    let mut sum = WithHessian::<5>::constant(0.0);
+    let mut sum = WithHessian::<N>::constant(0.0);
     for (moment, weight) in moments.iter().zip(weights) {
         sum = sum + moment.times(*weight);
     }
     // Second derivatives by the coordinates in the frame, in terms of the gradients of these.
-    let mut rows = [const { SmallVec::<[(usize, [f64; 2]); 4]>::new_const() }; 5];
+    let mut rows = [const { SmallVec::<[(usize, [f64; 2]); 4]>::new_const() }; N];
     for (which, row) in rows.iter_mut().enumerate() {
-        let mut slopes = [0.0; 5];
+        let mut slopes = [0.0; N];
         slopes[which] = 1.0;
         face.each_coordinate(piece, &slopes, &mut |node, gradient| row.push((2 * local.met.place(node), gradient)));
     }
@@ -139,7 +146,13 @@ fn of_piece(face: &CoveredFace, piece: &CoveringPiece, weights: &[f64], local: &
 
 /// The second derivatives of `s = q·d/L` and `h = d × q/L` of a node, with `d` along the face and `q` from its first
 /// node, times the slopes by these.
-fn of_coordinates(face: &CoveredFace, [s, h]: [f64; 2], node: usize, [by_s, by_h]: [f64; 2], local: &mut LocalMatrix) {
+fn of_coordinates<const N: usize>(
+    face: &CoveredFace<N>,
+    [s, h]: [f64; 2],
+    node: usize,
+    [by_s, by_h]: [f64; 2],
+    local: &mut LocalMatrix,
+) {
     let normal = turned_left(face.along);
     let vector = face.along.map(|part| part * face.length);
     let from_first = [0, 1].map(|k| s * face.along[k] + h * normal[k]);

@@ -51,6 +51,24 @@ fn all() -> Vec<(&'static str, Arc<dyn CoupledKinematics>)> {
     ]
 }
 
+/// Contacts of bodies of revolution, whose axis is to the left of all places.
+fn revolved() -> Vec<(&'static str, Arc<dyn CoupledKinematics>)> {
+    let place = |node: usize| [PLACES[node][0] + 0.7, PLACES[node][1]];
+    let surface = |faces: &[[usize; 2]]| {
+        let surface = OppositeSurface::new(faces, place).expect("a surface");
+        Arc::new(OppositeSurface { is_revolved: true, ..surface })
+    };
+    let all: Vec<[usize; 2]> = (0..7).map(|k| [k, k + 1]).collect();
+    vec![
+        ("mortar of revolution", Arc::new(MortarNode::new(1, [Some(0), Some(2)], surface(&OPPOSITE), place))),
+        (
+            "of revolution, covered in part",
+            Arc::new(MortarNode::new(2, [Some(1), None], surface(&OPPOSITE[2..]), place)),
+        ),
+        ("of revolution, a surface that touches itself", Arc::new(MortarNode::in_itself(5, surface(&all)))),
+    ]
+}
+
 pub(super) fn random(count: usize, size: f64, seed: u64) -> Vec<f64> {
     let mut state = seed;
     let mut next = || {
@@ -71,7 +89,7 @@ fn columns(contact: &dyn CoupledKinematics, u: &[f64]) -> Vec<[f64; 2]> {
 
 #[test]
 fn rows_are_the_derivatives_of_gap_and_motion() {
-    for (name, contact) in all() {
+    for (name, contact) in all().into_iter().chain(revolved()) {
         let count = 2 * contact.nodes().len();
         let u = random(count, 0.02, 7);
         let rows = columns(contact.as_ref(), &u);
@@ -93,7 +111,7 @@ fn rows_are_the_derivatives_of_gap_and_motion() {
 
 #[test]
 fn curvatures_are_the_derivatives_of_the_rows() {
-    for (name, contact) in all() {
+    for (name, contact) in all().into_iter().chain(revolved()) {
         let count = 2 * contact.nodes().len();
         let u = random(count, 0.02, 11);
         let force = [0.7, 1.3, 0.0];
@@ -146,6 +164,28 @@ fn both_bodies_carry_opposite_forces() {
         let end = contact.place(&|k| turned[k]);
         assert!((0..2).all(|k| (start[k] - end[k]).abs() <= 1e-13), "{name}: {start:?} {end:?}");
     }
+}
+
+/// In a body of revolution the gap is the mean of the distance with the weight of the radius: of a node with one face from
+/// `r = 0` to 1 before a line of the distance `r` it is that of the node, and the force on the other body is that of the
+/// pressure around the axis.
+#[test]
+fn radii_weigh_the_gaps_of_bodies_of_revolution() {
+    let place = |node: usize| [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0]][node];
+    let surface = OppositeSurface::new(&[[2, 3]], place).expect("a surface");
+    let surface = Arc::new(OppositeSurface { is_revolved: true, ..surface });
+    let [inner, outer] = [(0, [None, Some(1)]), (1, [Some(0), None])]
+        .map(|(node, beside)| MortarNode::new(node, beside, Arc::clone(&surface), place));
+    assert!(inner.initial_gap().abs() <= 1e-15 && (outer.initial_gap() - 1.0).abs() <= 1e-15);
+    // ∫ φ r dr = 1/6 and 1/3 for the two nodes of either surface.
+    let on_opposite = |node: &MortarNode| {
+        let rows = columns(node, &vec![0.0; 2 * node.nodes().len()]);
+        let at = |number: usize| node.nodes().iter().position(|one| *one == number).expect("a node");
+        [2, 3].map(|number| rows[2 * at(number) + 1][1])
+    };
+    let [of_inner, of_outer] = [on_opposite(&inner), on_opposite(&outer)];
+    let total = [0, 1].map(|k| of_inner[k] / 6.0 + of_outer[k] / 3.0);
+    assert!((total[0] - 1.0 / 3.0).abs() <= 1e-14 && (total[1] - 1.0 / 6.0).abs() <= 1e-14, "{total:?}");
 }
 
 /// A flat surface at a distance: the gap is the distance, the motion that of the node.
