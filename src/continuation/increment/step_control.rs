@@ -338,7 +338,7 @@ fn next_step_factor(trace: &PathTrace<'_>, accepted: &AcceptedStep, tried: f64, 
     // Where hardly any energy is stored, the effect of round-off in the displacements and in the gaps on the work says
     // nothing about the step.
     let modes = trace.at.here.modes.iter().zip(trace.loading().contacts).filter(|(mode, _)| mode.is_active());
-    let of_gaps = modes.map(|(_, contact)| contact.obstacle.rounding()).fold(0.0, f64::max);
+    let of_gaps = modes.map(|(_, contact)| contact.rounding()).fold(0.0, f64::max);
     let rounding =
         trace.at.totals.force_scale.max(reached.corrected.force_scale) * (WORK_ROUND_OFF * reached.step + of_gaps);
     let imbalance = if imbalance <= rounding { 0.0 } else { imbalance };

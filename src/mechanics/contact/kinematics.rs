@@ -69,6 +69,11 @@ pub trait CoupledKinematics: Debug + Send + Sync {
         add: &mut dyn FnMut(usize, usize, f64),
     );
 
+    /// Round-off of gaps and motions that are those of coordinates, not of displacements.
+    fn rounding(&self) -> f64 {
+        0.0
+    }
+
     /// The distance to the end of the surface that is touched, beyond which there is no contact; infinite where there is no
     /// such end. Positive before it.
     fn distance_to_end(&self, _displacement: LocalDisplacements<'_>) -> f64 {
@@ -102,6 +107,14 @@ impl Kinematics {
         match self {
             Self::Node(node) => std::slice::from_ref(node),
             Self::Coupled(coupled) => &coupled.nodes()[..coupled.own_nodes()],
+        }
+    }
+
+    /// Round-off of gaps and motions that are those of coordinates, not of displacements.
+    pub fn rounding(&self) -> f64 {
+        match self {
+            Self::Node(_) => 0.0,
+            Self::Coupled(coupled) => coupled.rounding(),
         }
     }
 

@@ -137,4 +137,9 @@ impl ContactPair {
     pub fn tangents(&self) -> usize {
         if self.friction.is_rough() { self.sliding.directions() } else { 0 }
     }
+
+    /// Round-off of the gap, and of motions along the surface, that displacements and forces do not determine.
+    pub fn rounding(&self) -> f64 {
+        self.obstacle.rounding().max(self.kinematics.rounding())
+    }
 }

@@ -293,8 +293,10 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
     /// factorisation would have passed the tolerance at once.
     fn is_left_by_rounding(&self, at: &IterateError) -> bool {
         let is_large = self.system.loading.structure.layout().is_some();
-        let at_place =
-            || at.geometric <= POSITION_ROUND_OFF.max(ROUND_OFF_MULTIPLE * f64::EPSILON * reach(&self.iterate.state));
+        let at_place = || {
+            at.geometric
+                <= POSITION_ROUND_OFF.max(ROUND_OFF_MULTIPLE * rounding_of_places(self.system, &self.iterate.state))
+        };
         is_large
             && at_place()
             && left_by_rounding(self.system, &self.iterate.state, &self.values, at.scale) == Some(0.0)
@@ -482,9 +484,8 @@ fn left_by_rounding(system: &ModeSystem<'_>, state: &State, values: &DVector<f64
     for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
         residual = residual.max((values[unknown].abs() - ROUND_OFF_MULTIPLE * rounding[*freedom]) / scale);
     }
-    let reach = reach(state);
     let geometric = largest_below_equilibrium(system, values);
-    let within = geometric <= ACCEPTED_RESIDUAL + ROUND_OFF_MULTIPLE * f64::EPSILON * reach;
+    let within = geometric <= ACCEPTED_RESIDUAL + ROUND_OFF_MULTIPLE * rounding_of_places(system, state);
     (residual <= ACCEPTED_RESIDUAL && within).then_some(residual)
 }
 
@@ -546,9 +547,12 @@ pub(crate) fn off_track(corrected: &Corrected, rows: &[usize]) -> f64 {
     rows.iter().fold(0.0, |largest, row| largest.max(corrected.left_over[*row].abs()))
 }
 
-/// The largest displacement, or the load: the scale of the rounding of positions.
-fn reach(state: &State) -> f64 {
-    state.displacement.iter().fold(state.load.abs(), |reach, value| reach.max(value.abs()))
+/// The rounding of positions: that of the largest displacement, of the load, or of the coordinates that a closed contact
+/// depends on.
+fn rounding_of_places(system: &ModeSystem<'_>, state: &State) -> f64 {
+    let reach = state.displacement.iter().fold(state.load.abs(), |reach, value| reach.max(value.abs()));
+    let closed = system.roles.iter().zip(system.loading.contacts).filter(|(role, _)| !matches!(role, Role::Free));
+    closed.map(|(_, contact)| contact.rounding()).fold(f64::EPSILON * reach, f64::max)
 }
 
 /// The largest residual of the equations other than equilibrium.

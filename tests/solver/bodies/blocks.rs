@@ -1,6 +1,6 @@
 //! Two blocks on each other: patch tests, full slip, a wedge.
 
-use super::{Sheet, moved, pair, support};
+use super::{Sheet, moved, pair, support, whole_path};
 use crate::common::paths::{close, request, trace};
 use crate::common::variants::{in_reverse, in_units};
 use arcslip::continuation::path::iterator::Path;
@@ -125,6 +125,37 @@ fn a_block_on_a_block_slips_as_a_whole_at_the_limit_of_friction() {
         let slips = increments.iter().filter_map(|increment| increment.point.event.as_deref());
         let slips: usize = slips.map(|event| event.matches("to slip").count()).sum();
         assert!(last.contacts.iter().all(|contact| contact.status == Status::Slip) && slips >= cells[1], "{slips}");
+    }
+}
+
+/// A block pressed on another one and pushed to full slip does the same whatever the stiffness over the pressure: gaps and slips
+/// have the rounding of displacements, not of coordinates.
+#[test]
+fn stiffness_does_not_decide_what_bodies_do() {
+    let of_stiffness = |young: f64| {
+        let lower = Sheet::new("l", [12, 3], |x, y| [5.0 * x - 0.5, y - 1.0]);
+        let upper = Sheet::new("u", [9, 3], |x, y| [4.0 * x, 0.5 * y]);
+        let mut model = pair(&lower, &upper, &material(("linear_elastic", young)), 0.3, false);
+        support(&mut model, &lower.lowest(), &["x", "y"]);
+        support(&mut model, &upper.highest(), &["x"]);
+        model["stages"] = json!([
+            {"name": "press", "tractions": {"top": [0, -1]}, "until": {"load_above": 1}},
+            {"name": "push", "displacements": moved(&upper.highest(), [1.5 / young, 0.0]), "until": {"load_above": 1}},
+        ]);
+        let increments = whole_path(&request(&json!({"model": model}).to_string()));
+        let (_, normal, tangential) = forces(increments.last().expect("an end"));
+        close(tangential, 0.3 * normal, 1e-12, "the law of friction");
+        increments
+    };
+    let expected = of_stiffness(1e3);
+    let slips = expected.iter().filter(|increment| increment.point.event.is_some()).count();
+    assert!(slips > 8, "{slips}");
+    for young in [1e6, 1e9, 1e11] {
+        let found = of_stiffness(young);
+        assert_eq!(found.len(), expected.len(), "{young}");
+        for (one, other) in found.iter().zip(&expected) {
+            assert_eq!(one.point.event, other.point.event, "{young}");
+        }
     }
 }
 

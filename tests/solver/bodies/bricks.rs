@@ -221,6 +221,30 @@ fn slips_as_a_whole(slope: f64) {
 
 /// The direction in which a node slips depends on those of its neighbours: the solves in which they settle are few. (Without
 /// acceleration the path took 1,582 factorisations.)
+/// A foot pressed on a table and pushed a little does the same whatever the stiffness over the pressure.
+#[test]
+fn stiffness_does_not_decide_what_bodies_do_in_space() {
+    let of_stiffness = |young: f64| {
+        let lower = Brick::new("l", [3, 3, 1], false, |[x, y, z]| [4.0 * x, 4.0 * y, z - 1.0]);
+        let upper = Brick::new("u", [2, 2, 1], false, |[x, y, z]| [1.0 + 2.0 * x, 1.0 + 2.0 * y, z]);
+        let mut model = pair(&lower, &upper, &material(("linear_elastic", young)), 0.3, false);
+        support(&mut model, &lower.layer(0), &["x", "y", "z"]);
+        model["stages"] = json!([
+            {"name": "press", "tractions": {"top": [0, 0, -1]}, "until": {"load_above": 1}},
+            {"name": "push", "tractions": {"top": [0.2, 0, 0]}, "until": {"load_above": 1}},
+        ]);
+        super::whole_path(&request(&json!({"model": model}).to_string()))
+    };
+    let expected = of_stiffness(1e2);
+    for young in [1e5, 1e8] {
+        let found = of_stiffness(young);
+        let events = |increments: &[Increment]| -> Vec<Option<String>> {
+            increments.iter().map(|increment| increment.point.event.clone()).filter(Option::is_some).collect()
+        };
+        assert_eq!(events(&found).len(), events(&expected).len(), "{young}");
+    }
+}
+
 #[test]
 fn coupled_slips_settle_in_few_solves() {
     let posted = slab(0.1, 0.3, [2, 1]);

@@ -15,6 +15,9 @@ pub(super) struct CoveringPiece<const N: usize> {
     /// Length of the face, then `s` and `h` of both nodes, in a body of revolution the radii of the face's nodes.
     pub(super) values: [f64; N],
     pub(super) along: [f64; 2],
+    /// The same coordinates, less those of the points of the face that were opposite at rest, where the mean over the face does
+    /// not depend on the latter: see [`CoveredFace::moments_of_slip`].
+    pub(super) slipped: [f64; 2],
     /// Whether the surface ends at the first and at the last node; the piece goes on straight there.
     pub(super) goes_on: [bool; 2],
 }
@@ -89,6 +92,21 @@ impl<const N: usize> CoveredFace<N> {
             sums.iter_mut().zip(own).for_each(|(sum, part)| *sum += part);
         }
         sums[MOMENTS] = self.length;
+        sums
+    }
+
+    /// As [`Self::moments`], with the positions less the undeformed coordinates of the face, `S + σ`. The value at the node of
+    /// the line that fits them is that of the positions alone, for the coordinate of the node is none of the state; and where
+    /// positions have the rounding of coordinates, these have that of displacements.
+    pub(super) fn moments_of_slip(&self) -> [f64; OF_FACE] {
+        let mut sums = self.moments();
+        let [places, places_first] = [MOMENTS - 3, MOMENTS - 2];
+        (sums[places], sums[places_first]) = (0.0, 0.0);
+        for piece in &self.pieces {
+            let own = moments(&piece.values, piece.slipped, piece.goes_on, self.at.from);
+            sums[places] += own[places];
+            sums[places_first] += own[places_first];
+        }
         sums
     }
 

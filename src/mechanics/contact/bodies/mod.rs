@@ -31,6 +31,48 @@ mod tolerances;
 /// A point or vector in the plane.
 pub type PlaneVector = [f64; 2];
 
+/// A node, its displacement apart from its undeformed place: what is small is computed from what is small.
+#[derive(Debug, Clone, Copy)]
+struct MovedNode {
+    place: PlaneVector,
+    moved: PlaneVector,
+}
+
+impl MovedNode {
+    fn position(&self) -> PlaneVector {
+        [self.place[0] + self.moved[0], self.place[1] + self.moved[1]]
+    }
+
+    /// The height of the node over the face from one node to another, of this length:
+    ///
+    /// ```text
+    /// h L = E × Q = E₀ × Q₀ + e × Q₀ + E × q
+    /// ```
+    ///
+    /// with undeformed edge `E₀` and way `Q₀` from its first node, and their changes `e` and `q`. The first term is the same in
+    /// every state; the others have the rounding of displacements, where `E × Q` has that of coordinates.
+    fn height_over(&self, [first, last]: [&Self; 2], length: f64) -> f64 {
+        let across = |a: PlaneVector, b: PlaneVector| a[0] * b[1] - a[1] * b[0];
+        let [edge_at_rest, way_at_rest] = [last, self].map(|node| difference(node.place, first.place));
+        let [edge_moved, way_moved] = [last, self].map(|node| difference(node.moved, first.moved));
+        let edge = difference(last.position(), first.position());
+        (across(edge_at_rest, way_at_rest) + (across(edge_moved, way_at_rest) + across(edge, way_moved))) / length
+    }
+
+    /// The coordinate of the node along the undeformed face, `L₀ E·Q/|E|²` from the face's first node, in two parts: that at
+    /// rest, and the change, which has the rounding of displacements.
+    fn along_undeformed(&self, [first, last]: [&Self; 2]) -> [f64; 2] {
+        let [edge_at_rest, way_at_rest] = [last, self].map(|node| difference(node.place, first.place));
+        let [edge_moved, way_moved] = [last, self].map(|node| difference(node.moved, first.moved));
+        let edge = difference(last.position(), first.position());
+        let square = product(edge_at_rest, edge_at_rest);
+        let share = product(edge_at_rest, way_at_rest) / square;
+        let lengthened = 2.0 * product(edge_at_rest, edge_moved) + product(edge_moved, edge_moved);
+        let moved = product(edge_moved, way_at_rest) + product(edge, way_moved) - share * lengthened;
+        [share, moved / product(edge, edge)].map(|part| square.sqrt() * part)
+    }
+}
+
 pub(super) fn difference(a: PlaneVector, b: PlaneVector) -> PlaneVector {
     [a[0] - b[0], a[1] - b[1]]
 }

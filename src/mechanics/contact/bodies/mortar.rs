@@ -27,7 +27,7 @@ use crate::mechanics::contact::bodies::opposite_surface::{
 use crate::mechanics::contact::bodies::second_derivatives;
 use crate::mechanics::contact::bodies::self_contact::{OwnSurface, faces_of_node};
 use crate::mechanics::contact::bodies::tolerances::{DEEPEST, LAST_COVERED, LEAST_COVERED, STEEPEST};
-use crate::mechanics::contact::bodies::{PlaneVector, difference, product, turned_left};
+use crate::mechanics::contact::bodies::{MovedNode, PlaneVector, difference, product, turned_left};
 use crate::mechanics::contact::kinematics::{CoupledKinematics, LocalDisplacements};
 use crate::mechanics::contact::vector::Vector;
 use smallvec::SmallVec;
@@ -46,7 +46,7 @@ pub struct MortarNode {
     opposite: Arc<OppositeSurface>,
     /// Where the surface touches itself: what the node sees of it.
     itself: Option<OwnSurface>,
-    /// Gap and position along the opposite surface without displacements.
+    /// Gap and position along the opposite surface without displacements; positions are counted from there.
     start: (f64, f64),
 }
 
@@ -123,26 +123,30 @@ impl MortarNode {
         self.itself.as_ref().map_or(self.places.len() + node, |itself| itself.local(node))
     }
 
+    /// One of the own nodes.
+    fn moved(&self, displacement: LocalDisplacements<'_>, node: usize) -> MovedNode {
+        MovedNode { place: self.places[node], moved: [displacement(2 * node), displacement(2 * node + 1)] }
+    }
+
     /// The present position of one of the own nodes.
     fn position(&self, displacement: LocalDisplacements<'_>, node: usize) -> PlaneVector {
-        let place = self.places[node];
-        [place[0] + displacement(2 * node), place[1] + displacement(2 * node + 1)]
+        self.moved(displacement, node).position()
     }
 
     /// The present positions of the ends of an opposite face.
     fn ends(&self, displacement: LocalDisplacements<'_>, face: &SurfaceFace) -> [PlaneVector; 2] {
-        face.nodes.map(|node| self.end(displacement, node))
+        face.nodes.map(|node| self.end(displacement, node).position())
     }
 
-    /// The present position of a node of the opposite surface.
-    fn end(&self, displacement: LocalDisplacements<'_>, node: usize) -> PlaneVector {
-        let (place, local) = (self.opposite.places[node], self.local(node));
-        [place[0] + displacement(2 * local), place[1] + displacement(2 * local + 1)]
+    /// A node of the opposite surface.
+    fn end(&self, displacement: LocalDisplacements<'_>, node: usize) -> MovedNode {
+        let local = self.local(node);
+        MovedNode { place: self.opposite.places[node], moved: [displacement(2 * local), displacement(2 * local + 1)] }
     }
 
-    /// The present positions of the ends of consecutive opposite faces, each node read once.
-    fn ends_of(&self, displacement: LocalDisplacements<'_>, faces: Range<usize>) -> SmallVec<[[PlaneVector; 2]; 64]> {
-        let mut all: SmallVec<[[PlaneVector; 2]; 64]> = SmallVec::with_capacity(faces.len());
+    /// The ends of consecutive opposite faces, each node read once.
+    fn ends_of(&self, displacement: LocalDisplacements<'_>, faces: Range<usize>) -> SmallVec<[[MovedNode; 2]; 64]> {
+        let mut all: SmallVec<[[MovedNode; 2]; 64]> = SmallVec::with_capacity(faces.len());
         let mut before: Option<usize> = None;
         for face in &self.opposite.faces[faces] {
             let shared = all.last().filter(|_| before == Some(face.nodes[0])).map(|ends| ends[1]);
@@ -191,18 +195,19 @@ impl MortarNode {
         let mut is_covered = false;
         let mut all = SmallVec::new();
         for (which, own) in self.faces.iter().enumerate() {
-            let [first, last] = own.nodes.map(|node| self.position(displacement, node));
+            let own_ends = own.nodes.map(|node| self.moved(displacement, node));
+            let [first, last] = own_ends.map(|end| end.position());
             let vector = difference(last, first);
             let length = product(vector, vector).sqrt();
             let along = vector.map(|part| part / length);
-            let normal = turned_left(along);
+            let at_rest = difference(own_ends[1].place, own_ends[0].place);
+            let length_at_rest = product(at_rest, at_rest).sqrt();
             let mut pieces: SmallVec<[CoveringPiece<N>; 4]> = SmallVec::new();
             let (mut area, mut centre) = (0.0, 0.0);
             for (index, ends) in in_front.clone().zip(&faces).filter(|(index, _)| self.looks_at(which, *index)) {
                 let face = &self.opposite.faces[index];
-                let ends = ends.map(|end| difference(end, first));
-                let [s_first, s_last] = ends.map(|end| product(along, end));
-                let [h_first, h_last] = ends.map(|end| product(normal, end));
+                let [s_first, s_last] = ends.map(|end| product(along, difference(end.position(), first)));
+                let [h_first, h_last] = ends.map(|end| end.height_over(own_ends.each_ref(), length));
                 if !is_in_front([s_first, s_last], [h_first, h_last], length) {
                     continue;
                 }
@@ -216,14 +221,22 @@ impl MortarNode {
                 }
                 // Around a closed surface coordinates jump; all are counted from the first.
                 let from = *reference.get_or_insert(face.along[0]);
-                let shift = from + self.opposite.way(face.chain, from, face.along[0]) - face.along[0];
+                let shift = from + self.opposite.way(face.chain, from, face.along[0]) - face.along[0] - self.start.1;
+                let place = face.along.map(|place| place + shift);
+                let is_fitted = !self.faces.iter().any(|face| face.is_alone);
+                // Coordinates of the own face count from the node.
+                let slipped = |end: usize| {
+                    let [at_rest, moved] = ends[end].along_undeformed(own_ends.each_ref());
+                    place[end] + at_rest - if own.nodes[1] == 0 { length_at_rest } else { 0.0 } + moved
+                };
                 area += width;
                 centre += width * 0.5 * (high + low);
                 let values = [length, s_first, h_first, s_last, h_last, first[0], last[0]];
                 pieces.push(CoveringPiece {
                     nodes: face.nodes.map(|node| self.local(node)),
                     values: std::array::from_fn(|k| values[k]),
-                    along: face.along.map(|place| place + shift),
+                    along: place,
+                    slipped: if is_fitted { [slipped(0), slipped(1)] } else { place },
                     goes_on,
                 });
             }
@@ -248,7 +261,7 @@ impl MortarNode {
         self.opposite.faces.iter().enumerate().filter(move |(index, _)| is_touchable(*index)).map(|(_, face)| face)
     }
 
-    /// Gap, position along the opposite surface and stretch. Where nothing is opposite, the gap is the distance of the node
+    /// Gap, position along the opposite surface, from that without displacements, and stretch. Where nothing is opposite, the gap is the distance of the node
     /// from the surface.
     fn values(&self, displacement: LocalDisplacements<'_>) -> (f64, f64, f64) {
         if self.opposite.is_revolved {
@@ -261,10 +274,10 @@ impl MortarNode {
     fn values_of<const N: usize>(&self, displacement: LocalDisplacements<'_>) -> (f64, f64, f64) {
         let covered = self.covered::<N>(displacement);
         if covered.is_empty() {
-            return (self.distance_of_node(displacement), self.start.1, 1.0);
+            return (self.distance_of_node(displacement), 0.0, 1.0);
         }
         let faces: SmallVec<[(FaceAtNode, [f64; OF_FACE]); 2]> =
-            covered.iter().map(|face| (face.at, face.moments())).collect();
+            covered.iter().map(|face| (face.at, face.moments_of_slip())).collect();
         let MeanAtNode { gap, place, stretch } = nodal_values(&faces);
         (gap, place, stretch)
     }
@@ -343,7 +356,7 @@ impl CoupledKinematics for MortarNode {
 
     fn place(&self, displacement: LocalDisplacements<'_>) -> Vector {
         let (gap, place, _) = self.values(displacement);
-        [place - self.start.1, gap - self.start.0, 0.0]
+        [place, gap - self.start.0, 0.0]
     }
 
     fn motion(&self, from: LocalDisplacements<'_>, to: LocalDisplacements<'_>) -> Vector {
@@ -373,6 +386,14 @@ impl CoupledKinematics for MortarNode {
         } else {
             second_derivatives::each(&self.covered::<IN_PLANE>(displacement), force, add);
         }
+    }
+
+    fn rounding(&self) -> f64 {
+        let lengths = self.faces.iter().map(|face| {
+            let [first, last] = face.nodes.map(|node| self.places[node]);
+            (last[0] - first[0]).hypot(last[1] - first[1])
+        });
+        f64::EPSILON * lengths.fold(0.0, f64::max)
     }
 
     fn distance_to_end(&self, displacement: LocalDisplacements<'_>) -> f64 {

@@ -333,6 +333,11 @@ impl CoupledKinematics for NodeToSurface {
         }
     }
 
+    fn rounding(&self) -> f64 {
+        let all = self.opposite.places.iter().chain([&self.place]).flatten();
+        f64::EPSILON * all.fold(0.0_f64, |most, value| most.max(value.abs()))
+    }
+
     fn beyond_end(&self, displacement: LocalDisplacements<'_>) -> Option<f64> {
         let left = self.distance_to_end(displacement);
         let own = self.own(displacement);

@@ -4,10 +4,10 @@
 use crate::mechanics::contact::bodies::space::covered_part::{Covered, CoveredPart, NodalMeans};
 use crate::mechanics::contact::bodies::space::overlap::Overlap;
 use crate::mechanics::contact::bodies::space::own_face::OwnFace;
-use crate::mechanics::contact::bodies::space::projection::TriangleFrame;
+use crate::mechanics::contact::bodies::space::projection::{MovedPoint, TriangleFrame};
 use crate::mechanics::contact::bodies::space::second_derivatives;
 use crate::mechanics::contact::bodies::space::surface::{
-    FaceInSpace, SurfaceInSpace, area_vector, ball_around, distance_from_triangle, distance_of_triangles,
+    FaceInSpace, SurfaceInSpace, SurfacePoint, area_vector, ball_around, distance_from_triangle, distance_of_triangles,
 };
 use crate::mechanics::contact::bodies::space::tangents::NodalTangents;
 use crate::mechanics::contact::bodies::tolerances::{DEEPEST, LAST_COVERED, LEAST_COVERED};
@@ -161,15 +161,19 @@ impl MortarNodeInSpace {
             let triangles = own_face.face.triangles(&corners, 0);
             for ((own, scale), functions) in triangles.into_iter().zip(&own_face.areas).zip(&own_face.functions) {
                 let Some(frame) = TriangleFrame::new(&own.points.map(|point| point.place)) else { continue };
+                let own_points = own.points.map(|point| self.moved_point(displacement, &point));
                 whole += scale * functions[0].iter().sum::<f64>() / 6.0;
                 for (other, places, ..) in &beside {
                     for opposite in other.triangles(places, first) {
-                        let projected = opposite.points.map(|point| frame.project(&point.place));
+                        let mut projected = opposite.points.map(|point| frame.project(&point.place));
                         let highest = projected.iter().map(|point| point.height).fold(f64::NEG_INFINITY, f64::max);
                         if highest < -DEEPEST * size_of_face {
                             continue;
                         }
                         let Some(overlap) = Overlap::new(projected.map(|point| point.xi)) else { continue };
+                        for (at, point) in projected.iter_mut().zip(&opposite.points) {
+                            at.height = frame.height(&own_points, &self.moved_point(displacement, point));
+                        }
                         parts.push(CoveredPart {
                             own,
                             frame,
@@ -201,13 +205,26 @@ impl MortarNodeInSpace {
         Covered { parts, faces, share }
     }
 
-    /// The present position of one of the contact's nodes.
-    fn place_of(&self, displacement: LocalDisplacements<'_>, node: usize) -> Vector {
-        if node < self.places.len() {
-            return self.position(displacement, node);
+    /// The undeformed place of one of the contact's nodes.
+    fn place_of(&self, node: usize) -> Vector {
+        let own = self.places.len();
+        if node < own { self.places[node] } else { self.opposite.places[node - own] }
+    }
+
+    /// The present way from the node to another one of the contact's.
+    fn way_to(&self, displacement: LocalDisplacements<'_>, node: usize) -> Vector {
+        let at_rest = add(&self.place_of(node), -1.0, &self.places[0]);
+        [0, 1, 2].map(|k| at_rest[k] + (displacement(3 * node + k) - displacement(k)))
+    }
+
+    /// A point of the surfaces, its displacement apart from its place.
+    fn moved_point(&self, displacement: LocalDisplacements<'_>, point: &SurfacePoint<'_>) -> MovedPoint {
+        let mut moved = MovedPoint { place: [0.0; 3], moved: [0.0; 3] };
+        for (node, share) in point.shares() {
+            moved.place = add(&moved.place, share, &self.place_of(node));
+            (0..3).for_each(|k| moved.moved[k] += share * displacement(3 * node + k));
         }
-        let place = &self.opposite.places[node - self.places.len()];
-        [0, 1, 2].map(|k| place[k] + displacement(3 * node + k))
+        moved
     }
 
     /// The state at displacements, kept or computed.
@@ -356,11 +373,9 @@ impl CoupledKinematics for MortarNodeInSpace {
         if before.columns.is_empty() || after.columns.is_empty() {
             return motion;
         }
-        let origins = [self.position(from, 0), self.position(to, 0)];
         for (own, other, sign) in [(&before, &after, -1.0), (&after, &before, 1.0)] {
             for (node, columns) in &own.columns {
-                let start = add(&self.place_of(from, *node), -1.0, &origins[0]);
-                let end = add(&self.place_of(to, *node), -1.0, &origins[1]);
+                let (start, end) = (self.way_to(from, *node), self.way_to(to, *node));
                 let (here, there) = if sign < 0.0 { (start, end) } else { (end, start) };
                 let chord = add(&here, -1.0, &turn(&other.frame, &own.frame, &there));
                 for (column, part) in columns.iter().zip(chord) {
@@ -384,6 +399,11 @@ impl CoupledKinematics for MortarNodeInSpace {
         add: &mut dyn FnMut(usize, usize, f64),
     ) {
         second_derivatives::each(self, displacement, force, add);
+    }
+
+    fn rounding(&self) -> f64 {
+        let lengths = self.places.iter().map(|place| size(&add(place, -1.0, &self.places[0])));
+        f64::EPSILON * lengths.fold(0.0, f64::max)
     }
 
     fn distance_to_end(&self, displacement: LocalDisplacements<'_>) -> f64 {

@@ -17,6 +17,15 @@ pub(super) struct TriangleFrame {
     /// The vectors `e^k` in the plane with `e^k·e_l = δ_kl`.
     dual: [Vector; 2],
     normal: Vector,
+    /// Twice the area.
+    area: f64,
+}
+
+/// A point, its displacement apart from its undeformed place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MovedPoint {
+    pub place: Vector,
+    pub moved: Vector,
 }
 
 /// Weights of the coordinates of a projected point in a function of them: by the two coordinates in the plane, by the
@@ -34,12 +43,34 @@ impl TriangleFrame {
         }
         let normal = scaled(&vector, 1.0 / area);
         let dual = [cross(&edges[1], &normal), cross(&normal, &edges[0])].map(|vector| scaled(&vector, 1.0 / area));
-        Some(Self { origin: corners[0], dual, normal })
+        Some(Self { origin: corners[0], dual, normal, area })
     }
 
     pub fn project(&self, point: &Vector) -> Projected {
         let from = add(point, -1.0, &self.origin);
         Projected { xi: self.dual.map(|dual| dot(&dual, &from)), height: dot(&self.normal, &from) }
+    }
+
+    /// The height of a point over the triangle, with corners and point given by their displacements apart from their undeformed
+    /// places:
+    ///
+    /// ```text
+    /// h |E_1 × E_2| = det(E_1, E_2, Q) = det(E⁰_1, E⁰_2, Q⁰) + det(e_1, E⁰_2, Q⁰) + det(E_1, e_2, Q⁰) + det(E_1, E_2, q)
+    /// ```
+    ///
+    /// The first term is the same in every state; the others have the rounding of displacements, where the whole has that of
+    /// coordinates.
+    pub fn height(&self, corners: &[MovedPoint; 3], point: &MovedPoint) -> f64 {
+        let from = |one: &MovedPoint| {
+            let [place, moved] = [(one.place, corners[0].place), (one.moved, corners[0].moved)]
+                .map(|(one, first)| add(&one, -1.0, &first));
+            MovedPoint { place, moved }
+        };
+        let [first, second, way] = [from(&corners[1]), from(&corners[2]), from(point)];
+        let edge = add(&first.place, 1.0, &first.moved);
+        let at_rest = cross(&first.place, &second.place);
+        let turned = add(&cross(&first.moved, &second.place), 1.0, &cross(&edge, &second.moved));
+        (dot(&at_rest, &way.place) + dot(&turned, &way.place)) / self.area + dot(&self.normal, &way.moved)
     }
 
     /// The gradient of a weighted sum of a point's coordinates by the corners of the triangle and by the point:
