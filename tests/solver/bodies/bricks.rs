@@ -219,8 +219,6 @@ fn slips_as_a_whole(slope: f64) {
     }
 }
 
-/// The direction in which a node slips depends on those of its neighbours: the solves in which they settle are few. (Without
-/// acceleration the path took 1,582 factorisations.)
 /// A foot pressed on a table and pushed a little does the same whatever the stiffness over the pressure.
 #[test]
 fn stiffness_does_not_decide_what_bodies_do_in_space() {
@@ -245,6 +243,8 @@ fn stiffness_does_not_decide_what_bodies_do_in_space() {
     }
 }
 
+/// The direction in which a node slips depends on those of its neighbours: the solves in which they settle are few. (Without
+/// acceleration the path took 1,582 factorisations.)
 #[test]
 fn coupled_slips_settle_in_few_solves() {
     let posted = slab(0.1, 0.3, [2, 1]);
