@@ -109,7 +109,9 @@ pub enum Refused {
 }
 
 /// Largest number of solves of an increment in which directions of slip settle.
-const MOST_PASSES: u64 = 12;
+const MOST_PASSES: u64 = 32;
+/// Number of such solves in which the largest angle left has to be halved.
+const MOST_IDLE_PASSES: u64 = 8;
 /// Largest number of zeros and dips located in one step, each nearer to the start than the one before.
 const MOST_LOOKS: usize = 32;
 
@@ -191,6 +193,7 @@ impl StepStart<'_> {
             // have.
             let mut is_last = !slip_turn_update::set_turns(&mut system, self.rate, &corrected, &tangent);
             let mut passes = SettlingPasses::default();
+            let (mut least, mut found_at) = (f64::INFINITY, 0);
             for pass in 1.. {
                 let again = newton::correct_from(
                     &system,
@@ -214,7 +217,10 @@ impl StepStart<'_> {
                 let (settles, unsettled) = passes.advance(&mut system, self.rate, &corrected, &tangent);
                 // What the last solve leaves is far below this: the estimate of the error compares two such ends.
                 is_last = !settles || unsettled <= SETTLED_ANGLE;
-                if !is_last && pass == MOST_PASSES {
+                if unsettled <= 0.5 * least {
+                    (least, found_at) = (unsettled, pass);
+                }
+                if !is_last && (pass == MOST_PASSES || pass - found_at >= MOST_IDLE_PASSES) {
                     return Err(Refused::Newton(Failure::NotConverged));
                 }
             }

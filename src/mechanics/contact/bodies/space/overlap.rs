@@ -41,6 +41,12 @@ const GAUSS: [f64; 2] = [0.211_324_865_405_187_13, 0.788_675_134_594_812_9];
 /// Edges that run along the limit of a triangle to within this part of it end nowhere in particular.
 const ALONG: f64 = 1e-9;
 
+/// Within this part of a triangle beside its limit, second derivatives pass from those of the triangle to those of the next
+/// one. Where edges of two meshes run along each other, as by symmetry, they jump, and iterations for a point at the jump would
+/// go to and fro between two tangents. The width is above the corrections in such iterations, slips of a thousandth of a face in
+/// directions that are off by 1e-5, and so small that few points are within it by chance.
+const PASSAGE: f64 = 1e-6;
+
 impl Overlap {
     /// What the triangle with corners `corners` covers of the unit triangle; `None` where that is nothing, or where the
     /// corners run counter-clockwise: such a triangle looks the same way. `φ` is 1.
@@ -122,7 +128,9 @@ impl Overlap {
             }
         }
         for (edge, is_end) in ends.iter().enumerate() {
-            let Some((pair, along, products)) = self.edge(edge) else { continue };
+            let Some((pair, along, products)) = self.edge(edge, if *is_end { ALONG } else { PASSAGE }) else {
+                continue;
+            };
             for (i, m) in pair.into_iter().enumerate() {
                 for (j, n) in pair.into_iter().enumerate() {
                     for a in 0..2 {
@@ -146,7 +154,7 @@ impl Overlap {
     pub fn changes_at_ends(&self, ends: &[bool; 3]) -> [[PlaneVector; 3]; 3] {
         let mut changes = [[[0.0; 2]; 3]; 3];
         for edge in (0..3).filter(|edge| ends[*edge]) {
-            let Some((pair, along, products)) = self.edge(edge) else { continue };
+            let Some((pair, along, products)) = self.edge(edge, ALONG) else { continue };
             for (i, l) in pair.into_iter().enumerate() {
                 for (j, m) in pair.into_iter().enumerate() {
                     (0..2).for_each(|k| changes[l][m][k] += products[i][j] * along[k]);
@@ -157,10 +165,10 @@ impl Overlap {
     }
 
     /// The corners of an edge, the edge turned outwards (as long as the edge; the corners run clockwise) and `∫ φ β_i β_j dt`
-    /// over its part inside the first triangle; `None` where it has none.
-    fn edge(&self, edge: usize) -> Option<([usize; 2], PlaneVector, [[f64; 2]; 2])> {
+    /// over its part inside the first triangle, whose limit is as wide as `width`; `None` where it has none.
+    fn edge(&self, edge: usize, width: f64) -> Option<([usize; 2], PlaneVector, [[f64; 2]; 2])> {
         let pair = [edge, (edge + 1) % 3];
-        let (from, to, share) = self.inside(pair[0], pair[1])?;
+        let (from, to, share) = self.inside(pair[0], pair[1], width)?;
         let [one, other] = pair.map(|corner| self.corners[corner]);
         let products = edge_products(from, to, |t| share * self.weight_at(pair, t));
         Some((pair, [one[1] - other[1], other[0] - one[0]], products))
@@ -190,9 +198,9 @@ impl Overlap {
         number: impl Fn(usize, PlaneVector) -> [D; 2],
     ) -> [[D; 2]; 2] {
         let zero = D::constant(0.0);
-        let Some((_, _, share)) = self.inside(first, last) else { return [[zero; 2]; 2] };
+        let Some((_, _, share)) = self.inside(first, last, ALONG) else { return [[zero; 2]; 2] };
         let (one, other) = (number(0, self.corners[first]), number(1, self.corners[last]));
-        let (from, to) = limits(one, other);
+        let (from, to) = limits(one, other, ALONG);
         let along = [other[0] - one[0], other[1] - one[1]];
         let outward = [-along[1], along[0]];
         let mut sums = [zero; 2];
@@ -209,14 +217,19 @@ impl Overlap {
         sums.map(|sum| outward.map(|part| sum * part))
     }
 
-    /// The part of an edge inside the unit triangle, and its share: half where the edge runs along the triangle's own, as
-    /// the neighbour there counts it, too.
-    fn inside(&self, first: usize, last: usize) -> Option<(f64, f64, f64)> {
+    /// The part of an edge inside the unit triangle, and its share: where the edge runs along the triangle's own to within a
+    /// width, the neighbour there counts it, too; on the triangle's own edge each takes half.
+    fn inside(&self, first: usize, last: usize, width: f64) -> Option<(f64, f64, f64)> {
         let (one, other) = (self.corners[first], self.corners[last]);
-        let (from, to) = limits(one, other);
+        let (from, to) = limits(one, other, width);
         let shares = [one, other].map(|[x, y]| [1.0 - x - y, x, y]);
-        let runs_along = (0..3).any(|k| shares.iter().all(|share| share[k].abs() <= ALONG));
-        (to > from).then_some((from, to, if runs_along { 0.5 } else { 1.0 }))
+        let mut counted = 1.0;
+        for [a, b] in [0, 1, 2].map(|k| shares.map(|share| share[k])) {
+            if a.abs() <= width && b.abs() <= width {
+                counted *= 0.5 + 0.25 * (a + b) / width;
+            }
+        }
+        (to > from && counted > 0.0).then_some((from, to, counted))
     }
 
     fn weight_at(&self, [first, last]: [usize; 2], t: f64) -> f64 {
@@ -239,13 +252,14 @@ fn edge_products(from: f64, to: f64, weight: impl Fn(f64) -> f64) -> [[f64; 2]; 
     products
 }
 
-/// The parameters between which a segment is inside the unit triangle; the second is not the larger one where it is not.
-fn limits<D: Differential>(one: [D; 2], other: [D; 2]) -> (D, D) {
+/// The parameters between which a segment is inside the unit triangle, whose limit is as wide as `width`; the second is not
+/// the larger one where it is not.
+fn limits<D: Differential>(one: [D; 2], other: [D; 2], width: f64) -> (D, D) {
     let (mut from, mut to) = (D::constant(0.0), D::constant(1.0));
     let third = |point: [D; 2]| (point[0] + point[1]).times(-1.0).plus(1.0);
     for (start, end) in [(one[0], other[0]), (one[1], other[1]), (third(one), third(other))] {
         let (a, b) = (start.value(), end.value());
-        if a.abs() <= ALONG && b.abs() <= ALONG {
+        if a.abs() <= width && b.abs() <= width {
             continue;
         }
         let at = || start * (start - end).reciprocal();
