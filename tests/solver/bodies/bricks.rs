@@ -234,12 +234,13 @@ fn stiffness_does_not_decide_what_bodies_do_in_space() {
         super::whole_path(&request(&json!({"model": model}).to_string()))
     };
     let expected = of_stiffness(1e2);
-    for young in [1e5, 1e8] {
+    assert!(expected.iter().filter(|increment| increment.point.event.is_some()).count() > 3);
+    for young in [1e6, 1e10] {
         let found = of_stiffness(young);
-        let events = |increments: &[Increment]| -> Vec<Option<String>> {
-            increments.iter().map(|increment| increment.point.event.clone()).filter(Option::is_some).collect()
-        };
-        assert_eq!(events(&found).len(), events(&expected).len(), "{young}");
+        assert_eq!(found.len(), expected.len(), "{young}");
+        for (one, other) in found.iter().zip(&expected) {
+            assert_eq!(one.point.event, other.point.event, "{young}");
+        }
     }
 }
 

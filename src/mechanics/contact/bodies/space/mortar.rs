@@ -211,10 +211,9 @@ impl MortarNodeInSpace {
         if node < own { self.places[node] } else { self.opposite.places[node - own] }
     }
 
-    /// The present way from the node to another one of the contact's.
-    fn way_to(&self, displacement: LocalDisplacements<'_>, node: usize) -> Vector {
-        let at_rest = add(&self.place_of(node), -1.0, &self.places[0]);
-        [0, 1, 2].map(|k| at_rest[k] + (displacement(3 * node + k) - displacement(k)))
+    /// The change of the way from the node to another one of the contact's.
+    fn change_of_way(&self, displacement: LocalDisplacements<'_>, node: usize) -> Vector {
+        [0, 1, 2].map(|k| displacement(3 * node + k) - displacement(k))
     }
 
     /// A point of the surfaces, its displacement apart from its place.
@@ -345,10 +344,20 @@ impl MortarNodeInSpace {
     }
 }
 
-/// A vector with the components along one frame that it has along another.
-fn turn(from: &[Vector; 3], to: &[Vector; 3], vector: &Vector) -> Vector {
-    let parts = from.iter().zip(to).map(|(axis, turned)| scaled(turned, dot(axis, vector)));
-    parts.fold([0.0; 3], |sum, part| add(&sum, 1.0, &part))
+/// The change of a vector that turns as one frame does into another:
+///
+/// ```text
+/// (R - I) v = s × v + s × (s × v)/(1 + cos θ),     s = sin θ a = ½ Σ_k e_k × R e_k,     1 + 2 cos θ = Σ_k e_k·R e_k
+/// ```
+///
+/// What rounding leaves in the frames turns the vector, and no more: the rows of a contact do not see that.
+fn change_by_turn(from: &[Vector; 3], to: &[Vector; 3], vector: &Vector) -> Vector {
+    let pairs = || from.iter().zip(to);
+    let sum = pairs().fold([0.0; 3], |sum, (axis, turned)| add(&sum, 1.0, &cross(axis, turned)));
+    let (sine, cosine) =
+        (scaled(&sum, 0.5), 0.5 * (pairs().map(|(axis, turned)| dot(axis, turned)).sum::<f64>() - 1.0));
+    let across = cross(&sine, vector);
+    add(&across, 1.0 / (1.0 + cosine), &cross(&sine, &across))
 }
 
 impl CoupledKinematics for MortarNodeInSpace {
@@ -375,9 +384,11 @@ impl CoupledKinematics for MortarNodeInSpace {
         }
         for (own, other, sign) in [(&before, &after, -1.0), (&after, &before, 1.0)] {
             for (node, columns) in &own.columns {
-                let (start, end) = (self.way_to(from, *node), self.way_to(to, *node));
+                let (start, end) = (self.change_of_way(from, *node), self.change_of_way(to, *node));
                 let (here, there) = if sign < 0.0 { (start, end) } else { (end, start) };
-                let chord = add(&here, -1.0, &turn(&other.frame, &own.frame, &there));
+                let way = add(&add(&self.place_of(*node), -1.0, &self.places[0]), 1.0, &there);
+                let turned = change_by_turn(&other.frame, &own.frame, &way);
+                let chord = add(&add(&here, -1.0, &there), -1.0, &turned);
                 for (column, part) in columns.iter().zip(chord) {
                     (0..2).for_each(|row| motion[row] += 0.5 * sign * part * column[row]);
                 }
