@@ -2,8 +2,9 @@
 //!
 //! Large strains: the length scale is the size of the structure, the load scale of a stage the load at which the tangent of
 //! the undeformed structure moves by this length. Small strains alone, where only the load has a size: the length scale is
-//! the largest displacement that the tangent of the undeformed structure has under the loads at which the stages end. Both
-//! depend on the mesh no more than the tangent's response does.
+//! the largest displacement that the tangent of the undeformed structure has under the loads at which the stages end; so it is
+//! where the loads move a structure of large strains by next to nothing. Both depend on the mesh no more than the tangent's
+//! response does.
 
 use crate::continuation::scene::build::{ScaledModel, build_contacts, build_stage, build_structure, first_contacts};
 use crate::continuation::scene::characteristic_stiffness::load_at_unit_displacement;
@@ -16,6 +17,10 @@ use crate::model::check::scope::size;
 use crate::model::request::{Analysis, Material, Model};
 use crate::model::solids::data;
 use std::collections::HashMap;
+
+/// Part of the size of a structure below which the displacement that loads are expected to cause gives the scale in large
+/// strains, too: steps of the size of the structure would be over before they are long enough to be told from none.
+const SMALL_MOTION: f64 = 1e-6;
 
 /// Young's modulus of each solid times its volume, over the size of the structure: a force; 0 without solids.
 fn stretching_force(model: &Model, numbers: &HashMap<&str, usize>) -> f64 {
@@ -75,10 +80,11 @@ pub(super) fn solid_scales(
         response.map(|(load_factor, _)| expected_load_factor(stage) / load_factor)
     };
     let largest = model.stages.iter().zip(&responses).filter_map(displaced).fold(0.0_f64, f64::max);
-    let natural = if is_linear && largest > 0.0 { largest * own } else { own };
+    let is_small = largest > 0.0 && (is_linear || largest < SMALL_MOTION);
+    let natural = if is_small { largest * own } else { own };
     let length = analysis.arc_length.displacement_scale.unwrap_or(natural);
     let of_stage = |place: usize| responses.get(place).copied().flatten().map_or(force, |(_, load)| load * force);
     let resistances: Vec<f64> = (0..model.stages.len()).map(|place| of_stage(place) * (length / own)).collect();
-    let force = if is_linear { force * (length / own) } else { force };
+    let force = if is_linear || is_small { force * (length / own) } else { force };
     Some(RequestScales { length, force, resistances, stretched: length / natural, structure: Some(structure) })
 }

@@ -7,12 +7,15 @@
 use crate::mechanics::contact::Reaction;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
-use crate::mechanics::problem::tolerances::{ACCEPTED_VIOLATION, NEGLIGIBLE_FORCE};
+use crate::mechanics::problem::tolerances::{
+    ACCEPTED_VIOLATION, LARGEST_ROUNDING_OF_GAP, NEGLIGIBLE_FORCE, ROUND_OFF_MULTIPLE,
+};
 
 /// The largest violation over the contacts; gaps dimensionless, reactions over the force scale at their nodes.
 pub fn violation(loading: Loading<'_>, state: &State, force_scale: f64) -> f64 {
     let of_contact = |(index, reaction): (usize, &Reaction)| {
-        let gap = loading.gap(index, state);
+        let rounding = (ROUND_OFF_MULTIPLE * loading.contacts[index].rounding()).min(LARGEST_ROUNDING_OF_GAP);
+        let gap = beyond(loading.gap(index, state), rounding);
         let friction = loading.contacts[index].friction;
         let traction = reaction.tangential_size();
         // The forces at the node are at most the force scale, so that they often need not be computed.
@@ -26,6 +29,11 @@ pub fn violation(loading: Loading<'_>, state: &State, force_scale: f64) -> f64 {
         (-gap).max(-normal).max(gap.min(normal).abs()).max(cone)
     };
     state.reactions.iter().enumerate().map(of_contact).fold(0.0, f64::max)
+}
+
+/// What of a value is beyond a rounding.
+fn beyond(value: f64, rounding: f64) -> f64 {
+    value - value.clamp(-rounding, rounding)
 }
 
 /// Whether a state may be a point of the path.

@@ -25,3 +25,11 @@ pub(crate) const NEGLIGIBLE_FORCE: f64 = 1e-20;
 /// as held then lies outside the true cone by no more than this fraction of its size. The bound is a few thousand unit
 /// round-offs of the angles, and far below the permitted violation 1e-10.
 pub(crate) const OPPOSITE_RAY_ANGLE: f64 = 1e-12;
+
+/// Multiple of the rounding of a contact's coordinates up to which a gap is none: a gap is a mean of differences of some ten of
+/// them, and a larger value would take gaps for none that displacements determine.
+pub(crate) const ROUND_OFF_MULTIPLE: f64 = 8.0;
+
+/// Largest rounding of a gap (dimensionless) that a point may have: with [`ACCEPTED_VIOLATION`] below the error 1e-9 that an
+/// increment may have.
+pub(crate) const LARGEST_ROUNDING_OF_GAP: f64 = 8e-10;

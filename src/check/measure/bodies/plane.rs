@@ -319,8 +319,10 @@ impl MeasuredBodyInPlane {
                 let [high, low] = ends.map(|end| product(end, along));
                 let [height_high, height_low] = ends.map(|end| product(end, across));
                 // The last face goes on straight beyond an end of the surface.
-                let from = if goes_on[1] { zero } else { larger(low, zero) };
-                let to = if goes_on[0] { length } else { smaller(high, length) };
+                // Parts that do not count as covered belong to the face beside them.
+                let least = COVERED * length.0;
+                let from = if goes_on[1] || low.0 <= least { zero } else { low };
+                let to = if goes_on[0] || high.0 >= length.0 - least { length } else { high };
                 let is_aside = is_aside(high.0 - low.0, [height_high.0, height_low.0], length.0);
                 if is_aside || to.0 - from.0 <= COVERED * length.0 {
                     continue;
@@ -540,12 +542,4 @@ fn product(a: NumberPair, b: NumberPair) -> PlaneNumber {
 fn root(a: PlaneNumber) -> PlaneNumber {
     let root = a.0.sqrt();
     a.map(root, 0.5 / root)
-}
-
-fn larger(a: PlaneNumber, b: PlaneNumber) -> PlaneNumber {
-    if a.0 > b.0 { a } else { b }
-}
-
-fn smaller(a: PlaneNumber, b: PlaneNumber) -> PlaneNumber {
-    if a.0 < b.0 { a } else { b }
 }

@@ -23,7 +23,8 @@ pub(crate) mod load_response;
 pub(crate) mod tolerances;
 
 use crate::continuation::scene::characteristic_stiffness::tolerances::{
-    ACCEPTED_CORRECTION, CLOSED_GAP, CONSTRAINT_STIFFNESS, ENERGY_ROUND_OFF, SMALLEST_ELEMENT_ENERGY,
+    ACCEPTED_CORRECTION, CLOSED_GAP, CONSTRAINT_STIFFNESS, ENERGY_ROUND_OFF, ROUND_OFF_MULTIPLE,
+    SMALLEST_ELEMENT_ENERGY,
 };
 use crate::mechanics::contact::ContactPair;
 use crate::mechanics::contact::vector::{Vector, add, dot};
@@ -71,7 +72,7 @@ pub(super) fn load_at_unit_displacement(
     let still = vec![0.0; structure.freedoms()];
     let estimate = StiffnessEstimate::new(structure, contacts, pattern, &still);
     let motion = estimate.at_first_order(&still)?;
-    let is_moved = estimate.mean(&motion, false).is_some();
+    let is_moved = estimate.mean(&motion, false).is_some() && estimate.is_resisted(&motion, &still);
     Some(motion.load.abs()).filter(|load| is_moved && *load > 0.0 && load.is_finite())
 }
 
@@ -226,6 +227,18 @@ impl StiffnessEstimate<'_> {
         motion.displacement.iter_mut().for_each(|value| *value /= largest);
         motion.load /= largest;
         Some(motion)
+    }
+
+    /// Whether the load that moves the structure is more than what rounding leaves in the forces of its elements, as where the
+    /// structure moves as a rigid body. Stretchings are resolved apart, whatever their stiffness.
+    fn is_resisted(&self, motion: &Motion, still: &[f64]) -> bool {
+        let mut rounding = vec![0.0; self.structure.freedoms()];
+        self.structure.each_stiffness_across(still, &mut |row, column, value| {
+            rounding[row] += f64::EPSILON * (value * motion.displacement[column]).abs();
+        });
+        let most = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        let pushed = load_response::pushed(self, still, &self.all_ties(still));
+        motion.load.abs() * most(&pushed) > ROUND_OFF_MULTIPLE * most(&rounding)
     }
 
     /// The motion of all degrees of freedom for values of the unknowns and the load.

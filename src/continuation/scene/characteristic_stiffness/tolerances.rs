@@ -24,3 +24,7 @@ pub(crate) const ACCEPTED_CORRECTION: f64 = 1e-9;
 /// round-off. An energy is quadratic in the stretch, so that the value is the square of a relative stretch of 1e-13,
 /// some 500 units of round-off, 2e-16.
 pub(crate) const ENERGY_ROUND_OFF: f64 = 1e-26;
+
+/// Multiple of the rounding of the elements' forces up to which the load of a motion is round-off: the sums have some ten
+/// terms, and a structure whose resistance is below a thousand roundings of its stiffness has no digits to give a scale.
+pub(crate) const ROUND_OFF_MULTIPLE: f64 = 1e3;

@@ -14,6 +14,7 @@
 //! end of the opposite surface would spoil this; the last face goes on straight beyond it.
 
 use crate::algebra::differential::Differential;
+use crate::mechanics::contact::bodies::tolerances::LEAST_COVERED;
 
 /// Number of integrals of a face; the length of the face follows them among the variables of [`nodal_values`].
 pub(super) const MOMENTS: usize = 8;
@@ -40,9 +41,11 @@ pub(super) fn moments<D: Differential, const N: usize>(
 ) -> [D; MOMENTS] {
     let (plane, radii) = piece.split_at(IN_PLANE);
     let [length, first, first_height, last, last_height] = std::array::from_fn(|k| plane[k]);
-    // The opposite surface runs the other way: its last node is on the side of smaller s.
-    let low = if last.value() > 0.0 && !goes_on[1] { last } else { D::constant(0.0) };
-    let high = if first.value() < length.value() && !goes_on[0] { first } else { length };
+    // The opposite surface runs the other way: its last node is on the side of smaller s. Beyond a node that is next to the end
+    // of the face the piece goes on to that end: what is left is too short to count as covered.
+    let least = LEAST_COVERED * length.value();
+    let low = if last.value() > least && !goes_on[1] { last } else { D::constant(0.0) };
+    let high = if first.value() < length.value() - least && !goes_on[0] { first } else { length };
     let width = high - low;
     let middle = (high + low).times(0.5);
     let inverse = (first - last).reciprocal();
