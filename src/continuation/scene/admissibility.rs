@@ -34,11 +34,11 @@ pub(super) fn refuse_dragged_supports(scene: &Scene, model: &Model) -> Result<()
             let normal = contact.frame(&[0.0; 3]).normal;
             structure.unknown_of[freedom].is_none() && normal[component].abs() < 1.0 && scene.stages.iter().any(moves)
         };
-        let is_dragged = match of_node {
+        let is_dragged = || match of_node {
             Some(node) => (0..dimension).any(|component| driven(node, component)),
             None => is_dragged_on_body(scene, contact),
         };
-        if model.contacts[index].friction > 0.0 && is_dragged {
+        if model.contacts.get(index).is_some_and(|posted| posted.friction > 0.0) && is_dragged() {
             return Err(InputErrors(vec![InputError::new(
                 format!("/model/contacts/{}/friction", model.posted_contact(index)),
                 format!(
@@ -58,8 +58,13 @@ pub(super) fn refuse_dragged_supports(scene: &Scene, model: &Model) -> Result<()
 fn is_dragged_on_body(scene: &Scene, contact: &ContactPair) -> bool {
     let structure = &scene.structure;
     let still = vec![0.0; structure.freedoms()];
+    let mut driving =
+        scene.stages.iter().filter(|stage| stage.pattern.supports.iter().any(|part| *part != 0.0)).peekable();
+    if driving.peek().is_none() {
+        return false;
+    }
     let products = build::products_of_free_motions(structure, contact);
-    scene.stages.iter().any(|stage| {
+    driving.any(|stage| {
         let (mut moved, mut size) = ([0.0; 3], 0.0_f64);
         contact_jacobian::each_column(structure, contact, &still, |freedom, column| {
             let support = stage.pattern.supports.get(freedom).copied().unwrap_or(0.0);

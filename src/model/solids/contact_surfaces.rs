@@ -213,14 +213,14 @@ impl<'a> ContactSurfaces<'a> {
         }
     }
 
-    /// Whether the `surface` of a mortar contact in the plane reaches beyond both ends of the other, and the other beyond
-    /// none of its own.
+    /// Whether the `surface` of a mortar contact in the plane reaches beyond an end of the other, and the other beyond none of
+    /// its own.
     pub fn reaches_beyond(&self, contact: &Contact) -> bool {
         let find = |name: &Option<String>| name.as_deref().and_then(|name| self.surfaces.get(name)?.as_ref().ok());
         match (find(&contact.surface), find(&contact.against)) {
             (Some(TouchedSurface::Plane(own)), Some(TouchedSurface::Plane(other))) if !contact.touches_itself() => {
                 contact.discretisation.unwrap_or_default() == ContactDiscretisation::Mortar
-                    && own.has_end_of(other) == [true; 2]
+                    && own.has_end_of(other).contains(&true)
                     && other.has_end_of(own) == [false; 2]
             }
             _ => false,

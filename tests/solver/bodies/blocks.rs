@@ -132,10 +132,10 @@ fn a_block_on_a_block_slips_as_a_whole_at_the_limit_of_friction() {
 /// have the rounding of displacements, not of coordinates.
 #[test]
 fn stiffness_does_not_decide_what_bodies_do() {
-    let of_stiffness = |young: f64| {
+    let of_stiffness = |kind: &str, young: f64| {
         let lower = Sheet::new("l", [12, 3], |x, y| [5.0 * x - 0.5, y - 1.0]);
         let upper = Sheet::new("u", [9, 3], |x, y| [4.0 * x, 0.5 * y]);
-        let mut model = pair(&lower, &upper, &material(("linear_elastic", young)), 0.3, false);
+        let mut model = pair(&lower, &upper, &material((kind, young)), 0.3, false);
         support(&mut model, &lower.lowest(), &["x", "y"]);
         support(&mut model, &upper.highest(), &["x"]);
         model["stages"] = json!([
@@ -147,15 +147,56 @@ fn stiffness_does_not_decide_what_bodies_do() {
         close(tangential, 0.3 * normal, 1e-12, "the law of friction");
         increments
     };
-    let expected = of_stiffness(1e3);
+    let expected = of_stiffness("linear_elastic", 1e3);
     let slips = expected.iter().filter(|increment| increment.point.event.is_some()).count();
     assert!(slips > 8, "{slips}");
     for young in [1e6, 1e9, 1e11] {
-        let found = of_stiffness(young);
+        let found = of_stiffness("linear_elastic", young);
         assert_eq!(found.len(), expected.len(), "{young}");
         for (one, other) in found.iter().zip(&expected) {
             assert_eq!(one.point.event, other.point.event, "{young}");
         }
+    }
+    // Large strains are small ones here.
+    let events = |increments: &[Increment]| -> Vec<(f64, String)> {
+        let of = |increment: &Increment| Some((increment.load_factor, increment.point.event.clone()?));
+        increments.iter().filter_map(of).collect()
+    };
+    for young in [1e7, 1e10] {
+        let (found, expected) = (events(&of_stiffness("saint_venant_kirchhoff", young)), events(&expected));
+        assert_eq!(found.len(), expected.len(), "{young}: {found:?} {expected:?}");
+        for ((load, words), (expected_load, expected_words)) in found.iter().zip(&expected) {
+            close(*load, *expected_load, 1e-3, &format!("{young}"));
+            assert_eq!(words, expected_words, "{young}");
+        }
+    }
+}
+
+/// A block whose ends stand on nodes of the other one, and stick there: the piece of the face beside such a node is too short to
+/// count as covered, and takes no part of the gradient with it.
+#[test]
+fn ends_may_stand_on_nodes() {
+    let lower = Sheet::new("l", [4, 1], |x, y| [2.0 * x - 1.0, y - 1.0]);
+    let upper = Sheet::new("u", [1, 1], |x, y| [x - 0.5, y]);
+    let mut model = pair(&lower, &upper, &material(("linear_elastic", 1e6)), 0.3, false);
+    support(&mut model, &lower.lowest(), &["x", "y"]);
+    support(&mut model, &upper.highest(), &["x"]);
+    model["stages"] = json!([{"name": "press", "tractions": {"top": [0, -1]}, "until": {"load_above": 1}}]);
+    whole_path(&request(&json!({"model": model}).to_string()));
+}
+
+/// A block that hovers over another one moves as a rigid body: rounding of its stiffness is no resistance.
+#[test]
+fn a_block_that_hovers_is_a_mechanism() {
+    let lower = Sheet::new("l", [4, 2], |x, y| [2.0 * x, y - 1.0]);
+    for height in [1e-6, 1e-2] {
+        let upper = Sheet::new("u", [3, 2], |x, y| [0.5 + x, height + y]);
+        let mut model = pair(&lower, &upper, &material(LINEAR), 0.3, false);
+        support(&mut model, &lower.lowest(), &["x", "y"]);
+        support(&mut model, &upper.highest(), &["x"]);
+        model["stages"] = json!([{"name": "press", "tractions": {"top": [0, -1]}, "until": {"load_above": 1}}]);
+        let error = Scene::new(&request(&json!({"model": model}).to_string())).map(|_| ()).expect_err("a mechanism");
+        assert!(error.to_string().contains("can move along y with no element"), "{error}");
     }
 }
 
