@@ -57,6 +57,14 @@ pub(super) fn refuse_dragged_supports(scene: &Scene, model: &Model) -> Result<()
 /// none of the two a motion of its own.
 fn is_dragged_on_body(scene: &Scene, contact: &ContactPair) -> bool {
     let structure = &scene.structure;
+    let moves_freely = match contact.sliding {
+        Sliding::None => false,
+        Sliding::Line { .. } => structure.dimension == 2,
+        Sliding::Plane => true,
+    };
+    if moves_freely {
+        return false;
+    }
     let still = vec![0.0; structure.freedoms()];
     let mut driving =
         scene.stages.iter().filter(|stage| stage.pattern.supports.iter().any(|part| *part != 0.0)).peekable();
@@ -71,16 +79,16 @@ fn is_dragged_on_body(scene: &Scene, contact: &ContactPair) -> bool {
             moved.iter_mut().zip(column).for_each(|(sum, part)| *sum += support * part);
             size = column.iter().fold(size, |most, part| most.max((support * part).abs()));
         });
-        let along = match (structure.dimension, contact.sliding) {
-            (2, Sliding::None) => {
+        let along = match contact.sliding {
+            Sliding::None if structure.dimension == 2 => {
                 // What of the motion across is taken up by the one that is left moves the surfaces along each other, too.
                 let [along, across, _] = moved;
                 let [both, square] = [products[0][1], products[1][1]];
                 if square > 0.0 { (along - both / square * across).abs() } else { along.abs() }
             }
-            (_, Sliding::None) => moved[0].hypot(moved[1]),
-            (3, Sliding::Line { across }) => dot(&across, &moved).abs(),
-            (_, Sliding::Line { .. } | Sliding::Plane) => 0.0,
+            Sliding::None => moved[0].hypot(moved[1]),
+            Sliding::Line { across } => dot(&across, &moved).abs(),
+            Sliding::Plane => 0.0,
         };
         along > DRAGGED * size
     })

@@ -162,8 +162,9 @@ fn stiffness_does_not_decide_what_bodies_do() {
         let of = |increment: &Increment| Some((increment.load_factor, increment.point.event.clone()?));
         increments.iter().filter_map(of).collect()
     };
+    let expected = events(&of_stiffness("linear_elastic", 1e9));
     for young in [1e7, 1e10] {
-        let (found, expected) = (events(&of_stiffness("saint_venant_kirchhoff", young)), events(&expected));
+        let found = events(&of_stiffness("saint_venant_kirchhoff", young));
         assert_eq!(found.len(), expected.len(), "{young}: {found:?} {expected:?}");
         for ((load, words), (expected_load, expected_words)) in found.iter().zip(&expected) {
             close(*load, *expected_load, 1e-3, &format!("{young}"));
@@ -196,7 +197,7 @@ fn a_block_that_hovers_is_a_mechanism() {
         support(&mut model, &upper.highest(), &["x"]);
         model["stages"] = json!([{"name": "press", "tractions": {"top": [0, -1]}, "until": {"load_above": 1}}]);
         let error = Scene::new(&request(&json!({"model": model}).to_string())).map(|_| ()).expect_err("a mechanism");
-        assert!(error.to_string().contains("can move along y with no element"), "{error}");
+        assert!(error.to_string().contains("the structure is a mechanism"), "{error}");
     }
 }
 

@@ -128,7 +128,7 @@ impl Overlap {
             }
         }
         for (edge, is_end) in ends.iter().enumerate() {
-            let Some((pair, along, products)) = self.edge(edge, if *is_end { ALONG } else { PASSAGE }) else {
+            let Some((pair, along, products)) = self.edge(edge, (!*is_end).then_some(PASSAGE)) else {
                 continue;
             };
             for (i, m) in pair.into_iter().enumerate() {
@@ -154,7 +154,7 @@ impl Overlap {
     pub fn changes_at_ends(&self, ends: &[bool; 3]) -> [[PlaneVector; 3]; 3] {
         let mut changes = [[[0.0; 2]; 3]; 3];
         for edge in (0..3).filter(|edge| ends[*edge]) {
-            let Some((pair, along, products)) = self.edge(edge, ALONG) else { continue };
+            let Some((pair, along, products)) = self.edge(edge, None) else { continue };
             for (i, l) in pair.into_iter().enumerate() {
                 for (j, m) in pair.into_iter().enumerate() {
                     (0..2).for_each(|k| changes[l][m][k] += products[i][j] * along[k]);
@@ -165,10 +165,11 @@ impl Overlap {
     }
 
     /// The corners of an edge, the edge turned outwards (as long as the edge; the corners run clockwise) and `∫ φ β_i β_j dt`
-    /// over its part inside the first triangle, whose limit is as wide as `width`; `None` where it has none.
-    fn edge(&self, edge: usize, width: f64) -> Option<([usize; 2], PlaneVector, [[f64; 2]; 2])> {
+    /// over its part inside the first triangle, with the width of a passage to the next triangle, if there is one; `None` where
+    /// it has none.
+    fn edge(&self, edge: usize, passage: Option<f64>) -> Option<([usize; 2], PlaneVector, [[f64; 2]; 2])> {
         let pair = [edge, (edge + 1) % 3];
-        let (from, to, share) = self.inside(pair[0], pair[1], width)?;
+        let (from, to, share) = self.inside(pair[0], pair[1], passage)?;
         let [one, other] = pair.map(|corner| self.corners[corner]);
         let products = edge_products(from, to, |t| share * self.weight_at(pair, t));
         Some((pair, [one[1] - other[1], other[0] - one[0]], products))
@@ -198,7 +199,7 @@ impl Overlap {
         number: impl Fn(usize, PlaneVector) -> [D; 2],
     ) -> [[D; 2]; 2] {
         let zero = D::constant(0.0);
-        let Some((_, _, share)) = self.inside(first, last, ALONG) else { return [[zero; 2]; 2] };
+        let Some((_, _, share)) = self.inside(first, last, None) else { return [[zero; 2]; 2] };
         let (one, other) = (number(0, self.corners[first]), number(1, self.corners[last]));
         let (from, to) = limits(one, other, ALONG);
         let along = [other[0] - one[0], other[1] - one[1]];
@@ -217,16 +218,17 @@ impl Overlap {
         sums.map(|sum| outward.map(|part| sum * part))
     }
 
-    /// The part of an edge inside the unit triangle, and its share: where the edge runs along the triangle's own to within a
-    /// width, the neighbour there counts it, too; on the triangle's own edge each takes half.
-    fn inside(&self, first: usize, last: usize, width: f64) -> Option<(f64, f64, f64)> {
+    /// The part of an edge inside the unit triangle, and its share: half where the edge runs along the triangle's own, as the
+    /// neighbour there counts it, too; over the width of a passage from all to none.
+    fn inside(&self, first: usize, last: usize, passage: Option<f64>) -> Option<(f64, f64, f64)> {
+        let width = passage.unwrap_or(ALONG);
         let (one, other) = (self.corners[first], self.corners[last]);
         let (from, to) = limits(one, other, width);
         let shares = [one, other].map(|[x, y]| [1.0 - x - y, x, y]);
         let mut counted = 1.0;
         for [a, b] in [0, 1, 2].map(|k| shares.map(|share| share[k])) {
             if a.abs() <= width && b.abs() <= width {
-                counted *= 0.5 + 0.25 * (a + b) / width;
+                counted *= passage.map_or(0.5, |width| 0.5 + 0.25 * (a + b) / width);
             }
         }
         (to > from && counted > 0.0).then_some((from, to, counted))
