@@ -307,17 +307,7 @@ fn random_pairs_in_space_keep_the_laws() {
     let mut statuses = [0; 3];
     for seed in 0..8 {
         let found = judged(&random_pair(seed, 0.0));
-        for (increment, errors) in found.increments.iter().zip(&found.errors) {
-            assert!(errors.largest_of_state() <= 1e-9, "seed {seed}, increment {}: {errors:?}", increment.index);
-            assert!(errors.energy <= 1e-5, "seed {seed}, increment {}: {errors:?}", increment.index);
-            for contact in &increment.contacts {
-                statuses[match contact.status {
-                    Status::Free => 0,
-                    Status::Stick => 1,
-                    Status::Slip => 2,
-                }] += 1;
-            }
-        }
+        super::count_within_the_measure(&found, 1e-5, seed, &mut statuses);
         let scene = Scene::new(&random_pair(seed, 0.7)).expect("a scene");
         let turned: Vec<Increment> = Path::new(&scene, CancelFlag::default()).collect();
         assert_eq!(found.increments.len(), turned.len(), "seed {seed}");

@@ -15,9 +15,9 @@ mod revolution;
 mod spheres;
 mod tube;
 
-use crate::common::paths::judged;
+use crate::common::paths::{Traced, judged};
 use arcslip::JobRequest;
-use arcslip::result::increment::Increment;
+use arcslip::result::increment::{Increment, Status};
 use arcslip::result::stop_reason::StopReason;
 use serde_json::{Map, Value, json};
 
@@ -107,6 +107,21 @@ pub fn moved(nodes: &[String], motion: [f64; 2]) -> Value {
 /// Prescribed displacements of nodes in space.
 pub fn moved_in_space(nodes: &[String], motion: [f64; 3]) -> Value {
     nodes.iter().map(|node| (node.clone(), json!(motion))).collect::<Map<_, _>>().into()
+}
+
+/// Counts the contacts of a path that are free, stick and slip; every increment is within the measure, its energy within a bar.
+pub fn count_within_the_measure(path: &Traced, energy: f64, seed: u64, statuses: &mut [usize; 3]) {
+    for (increment, errors) in path.increments.iter().zip(&path.errors) {
+        assert!(errors.largest_of_state() <= 1e-9, "seed {seed}, increment {}: {errors:?}", increment.index);
+        assert!(errors.energy <= energy, "seed {seed}, increment {}: {errors:?}", increment.index);
+        for contact in &increment.contacts {
+            statuses[match contact.status {
+                Status::Free => 0,
+                Status::Stick => 1,
+                Status::Slip => 2,
+            }] += 1;
+        }
+    }
 }
 
 /// The increments of a path to the end of its last stage, all within the measure.

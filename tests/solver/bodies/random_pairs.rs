@@ -1,6 +1,6 @@
 //! Random small pairs of bodies.
 
-use super::{Sheet, moved, pair, support};
+use super::{Sheet, count_within_the_measure, moved, pair, support};
 use crate::common::paths::{judged, request};
 use crate::common::random::Numbers;
 use arcslip::JobRequest;
@@ -8,7 +8,7 @@ use arcslip::continuation::path::iterator::Path;
 use arcslip::continuation::scene::Scene;
 use arcslip::model::request::Method;
 use arcslip::resources::cancel::CancelFlag;
-use arcslip::result::increment::{Increment, Status};
+use arcslip::result::increment::Increment;
 use serde_json::json;
 
 /// Two small bodies in the plane, all in turned axes.
@@ -96,17 +96,7 @@ fn random_pairs_keep_the_laws() {
     for seed in 0..100 {
         let posted = random_pair(seed, 0.0);
         let traced_and_judged = judged(&posted);
-        for (increment, errors) in traced_and_judged.increments.iter().zip(&traced_and_judged.errors) {
-            assert!(errors.largest_of_state() <= 1e-9, "seed {seed}, increment {}: {errors:?}", increment.index);
-            assert!(errors.energy <= 1e-6, "seed {seed}, increment {}: {errors:?}", increment.index);
-            for contact in &increment.contacts {
-                statuses[match contact.status {
-                    Status::Free => 0,
-                    Status::Stick => 1,
-                    Status::Slip => 2,
-                }] += 1;
-            }
-        }
+        count_within_the_measure(&traced_and_judged, 1e-6, seed, &mut statuses);
         same_events(&traced_and_judged.increments, &traced(&random_pair(seed, 0.7)), &format!("seed {seed}, turned"));
     }
     assert!(statuses.iter().all(|count| *count > 500), "{statuses:?}");

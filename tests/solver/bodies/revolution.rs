@@ -1,13 +1,13 @@
 //! Bodies of revolution that touch each other, with the axis at `x = 0`.
 
 use super::random_pairs::revolved_pair;
-use super::{Sheet, moved, pair, support, whole_path};
+use super::{Sheet, count_within_the_measure, moved, pair, support, whole_path};
 use crate::common::paths::{close, judged, request, trace};
 use crate::common::variants::{in_reverse, in_units};
 use arcslip::result::increment::{Increment, Status};
 use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// A model of two sheets in the plane of revolution.
 fn revolved(lower: &Sheet, upper: &Sheet, material: &Value, friction: f64, swapped: bool) -> Value {
@@ -18,7 +18,7 @@ fn revolved(lower: &Sheet, upper: &Sheet, material: &Value, friction: f64, swapp
     model
 }
 
-/// Names of the nodes of a column of a sheet of four rows.
+/// Names of the nodes of a column of a sheet of so many rows.
 fn column(sheet: &Sheet, column: usize, rows: usize) -> Vec<String> {
     (0..=rows).map(|row| sheet.name(column, row)).collect()
 }
@@ -176,7 +176,6 @@ fn elastic_spheres_follow_hertz() {
         let hertz = (3.0 * press * 0.5 * RADIUS / (4.0 * modulus)).cbrt();
         println!("{cells:?}, {swapped}: {} increments, radius {radius:.5}, Hertz {hertz:.5}", increments.len());
         assert!((radius / hertz - 1.0).abs() < 0.01, "{cells:?}, {swapped}: {radius} {hertz}");
-        assert!(PI * radius * radius > 1.0);
     }
 }
 
@@ -195,17 +194,7 @@ fn random_pairs_of_revolution_keep_the_laws() {
     for seed in 0..60 {
         let posted = revolved_pair(seed);
         let traced = judged(&posted);
-        for (increment, errors) in traced.increments.iter().zip(&traced.errors) {
-            assert!(errors.largest_of_state() <= 1e-9, "seed {seed}, increment {}: {errors:?}", increment.index);
-            assert!(errors.energy <= 1e-6, "seed {seed}, increment {}: {errors:?}", increment.index);
-            for contact in &increment.contacts {
-                statuses[match contact.status {
-                    Status::Free => 0,
-                    Status::Stick => 1,
-                    Status::Slip => 2,
-                }] += 1;
-            }
-        }
+        count_within_the_measure(&traced, 1e-6, seed, &mut statuses);
         let expected = events(&traced.increments);
         for (what, other) in [("units", in_units(posted.clone(), 1e3, 1e-3)), ("order", in_reverse(posted.clone()))] {
             let found = events(&judged(&other).increments);
