@@ -77,16 +77,14 @@ impl Reached {
 /// Locates a limit point at which the equations of the mode are singular, from the point past it.
 pub type LocateSingularLimit = fn(&StepStart<'_>, EventFunction, &Reached, &mut Work) -> Option<Box<Reached>>;
 
-/// A trial step and its event functions.
-pub(crate) struct Attempt {
-    /// The farthest point, where some quantities may be negative.
-    pub reached: Box<Reached>,
-    pub event_functions: Vec<EventFunction>,
-    /// The event functions that are negative there.
+/// The event functions of a trial step, at whose end some may be negative.
+pub(crate) struct StepEvents {
+    pub functions: Vec<EventFunction>,
+    /// The event functions that are negative at the end.
     pub passed: Vec<EventFunction>,
     /// The points of the step, where an event is passed.
     pub stretch: Option<Box<StepPoints>>,
-    /// The event function that is zero at the farthest point, where its zero was solved for.
+    /// The event function that is zero at the end, where its zero was solved for.
     pub met: Option<EventFunction>,
 }
 
@@ -264,8 +262,8 @@ impl StepStart<'_> {
         singular_limit: LocateSingularLimit,
         work: &mut Work,
     ) -> Result<Box<Reached>, Refused> {
-        let tried = self.attempt(step, None, None, ends, load_sign, work)?;
-        self.stop_at_event(tried, ends, singular_limit, work)
+        let (reached, events) = self.attempt(step, None, None, ends, load_sign, work)?;
+        self.stop_at_event(reached, events, ends, singular_limit, work)
     }
 
     /// A trial step of an arc length, with the events that it passes. `before` is the point before the start in the
@@ -278,7 +276,7 @@ impl StepStart<'_> {
         ends: &[End],
         load_sign: f64,
         work: &mut Work,
-    ) -> Result<Attempt, Refused> {
+    ) -> Result<(Box<Reached>, StepEvents), Refused> {
         let foreseen = before.and_then(|before| before.foresee(self.state, self.rate, step));
         let guess = foreseen.unwrap_or_else(|| self.state.advanced(self.rate, step));
         let mut system = ModeSystem::new(self.loading, self.modes, self.state);
@@ -292,7 +290,7 @@ impl StepStart<'_> {
         if stretch.is_none() {
             (passed, stretch) = self.dips(&event_functions, &mut reached, serving, work)?;
         }
-        Ok(Attempt { reached, event_functions, passed, stretch, met: None })
+        Ok((reached, StepEvents { functions: event_functions, passed, stretch, met: None }))
     }
 
     /// The event functions that may end a step.
@@ -308,12 +306,13 @@ impl StepStart<'_> {
     /// Ends a step at the first event in it.
     pub(crate) fn stop_at_event(
         &self,
-        tried: Attempt,
+        mut reached: Box<Reached>,
+        events: StepEvents,
         ends: &[End],
         singular_limit: LocateSingularLimit,
         work: &mut Work,
     ) -> Result<Box<Reached>, Refused> {
-        let Attempt { mut reached, event_functions, mut passed, mut stretch, met } = tried;
+        let StepEvents { functions: event_functions, mut passed, mut stretch, met } = events;
         // The first solve shows how difficult the step is.
         let hardness = reached.corrected.iterations_to_small;
         // Each round finds the first zero of one quantity; any other that is negative there has its zero before.

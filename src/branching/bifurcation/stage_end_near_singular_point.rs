@@ -5,9 +5,10 @@
 //! between regular points, and accepted by its residual as every other point is.
 
 use crate::algebra::scalar_root::find_root;
-use crate::branching::bifurcation::locate::{self, Located, LocatedEnd, WIDTHS};
+use crate::branching::bifurcation::locate::{self, Located, WIDTHS};
 use crate::branching::bifurcation::simultaneous_limit_points;
 use crate::branching::bifurcation::singularity::test_functions::{self, Signature, SignatureChange};
+use crate::branching::bifurcation::step_end::StepEnd;
 use crate::branching::bifurcation::tolerances::LARGEST_SHIFT_TO_BOUND;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_end_criteria::End;
@@ -27,14 +28,14 @@ const LENGTHENED: [f64; 4] = [1.0, 1.01, 1.1, 1.5];
 /// reach the bound; `None` where there is no singular point nearby.
 ///
 /// `load_sign` and `known`: sign of the load rate and signature at the start.
-pub fn beside_singular(
+pub(crate) fn beside_singular(
     start: &StepStart<'_>,
     step: f64,
     ends: &[End],
     load_sign: f64,
     known: Option<Signature>,
     work: &mut Work,
-) -> Option<LocatedEnd> {
+) -> Option<StepEnd> {
     let bounds: Vec<End> = ends.iter().copied().filter(|end| end.is_bound()).collect();
     if bounds.is_empty() {
         return None;
@@ -65,7 +66,7 @@ pub fn beside_singular(
         let farther = placed(start, &farther);
         let (place, bound) = first_met(&origin, &farther, &bounds, &left_to)?;
         let (state, rate) = between(&origin, &farther, place);
-        Some((ended(start, state, &rate, bound, width, &beyond)?, None, None))
+        ended(start, state, &rate, bound, width, &beyond).map(StepEnd::plain)
     })
 }
 
@@ -77,7 +78,7 @@ fn at_crossing(
     left_to: &impl Fn(&End, &State) -> f64,
     beyond: &Reached,
     work: &mut Work,
-) -> Option<LocatedEnd> {
+) -> Option<StepEnd> {
     let [nearer, farther] = located.between(start, beyond.step, work)?;
     let Located { mut point, crossing, .. } = located;
     let width = farther.place - nearer.place;
@@ -93,16 +94,16 @@ fn at_crossing(
             .advanced(&point.rate, if ahead.abs() <= LARGEST_SHIFT_TO_BOUND { ahead } else { 0.0 });
         let found = ended(start, state, &point.rate, *bound, width, beyond)?;
         let after = crossing.after;
-        return Some((found, Some(crossing), Some(after)));
+        return Some(StepEnd::in_mode(found, Some(crossing), Some(after)));
     }
     let (place, bound) = first_met(&nearer, &farther, bounds, left_to)?;
     if place > point.step {
         point.corrected.iterations_to_small = beyond.corrected.iterations_to_small;
         let after = crossing.after;
-        return Some((point, Some(crossing), Some(after)));
+        return Some(StepEnd::in_mode(point, Some(crossing), Some(after)));
     }
     let (state, rate) = between(&nearer, &farther, place);
-    Some((ended(start, state, &rate, bound, width, beyond)?, None, None))
+    ended(start, state, &rate, bound, width, beyond).map(StepEnd::plain)
 }
 
 /// The bound that the path meets first between two points, and its place.

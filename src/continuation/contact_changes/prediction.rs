@@ -24,7 +24,7 @@ use crate::step::corrector::tangent;
 use crate::step::event_functions::{self, EventFunction, EventZero};
 use crate::step::event_location::StepPoints;
 use crate::step::interpolation::PlacedPoint;
-use crate::step::mode_step::{Attempt, StepStart, may_turn};
+use crate::step::mode_step::{Reached, StepEvents, StepStart, may_turn};
 
 /// A contact change, or the end of a stage, predicted by the rates.
 #[derive(Debug, Clone, Copy)]
@@ -81,7 +81,7 @@ pub(crate) fn meet_change(
     ends: &[End],
     load_sign: f64,
     work: &mut Work,
-) -> Option<Attempt> {
+) -> Option<(Box<Reached>, StepEvents)> {
     let ForeseenChange { event_function, way, step, is_straight } = foreseen;
     let system = ModeSystem::new(start.loading, start.modes, start.state);
     if event_function.slope(start.loading, start.modes, start.state, start.rate).is_none() || system.has_tracks() {
@@ -116,5 +116,5 @@ pub(crate) fn meet_change(
     if stretch.is_none() && !is_straight {
         (passed, stretch) = start.dips(&others, &mut reached, serving, work).ok()?;
     }
-    Some(Attempt { reached, event_functions, passed, stretch, met: Some(event_function) })
+    Some((reached, StepEvents { functions: event_functions, passed, stretch, met: Some(event_function) }))
 }

@@ -37,6 +37,7 @@
 
 use crate::algebra::SystemFactorisation;
 use crate::branching::bifurcation::singularity::test_functions::{Signature, negative_eigenvalues};
+use crate::branching::bifurcation::step_end::{JoinedChanges, StepEnd};
 use crate::continuation::contact_changes::linear_complementarity::{Complementary, complementary};
 use crate::continuation::contact_changes::tolerances::LONGEST_PATH_RATIO;
 use crate::mechanics::contact::Mode;
@@ -53,7 +54,7 @@ use crate::step::corrector::newton;
 use crate::step::corrector::single_iteration;
 use crate::step::corrector::tangent;
 use crate::step::event_functions::{self, EventFunction};
-use crate::step::mode_step::{Attempt, Reached, StepStart, may_turn};
+use crate::step::mode_step::{Reached, StepEvents, StepStart, may_turn};
 use crate::step::tolerances::COINCIDENCE_TOLERANCE;
 use std::collections::BTreeSet;
 
@@ -61,17 +62,6 @@ use std::collections::BTreeSet;
 const MOST_RISE: usize = 2;
 /// Largest number of modes tried at the end of a step.
 const MOST_ROUNDS: usize = 12;
-
-/// The end of a step that contains contact changes.
-pub(crate) struct Joined {
-    pub reached: Box<Reached>,
-    /// The number of contact changes.
-    pub changes: u64,
-    pub signature: Option<Signature>,
-    /// The path's direction at the end of the step if no contact changed: it shows the turn of the path without its
-    /// kinks.
-    pub unchanged: Rate,
-}
 
 /// The modes that hold at the end of a step, and the point there.
 struct EndModes {
@@ -112,18 +102,22 @@ pub(crate) fn may_join_at(loading: Loading<'_>, modes: &[Mode], event_function: 
 }
 
 /// The contacts that change in a trial step, if they are several and may be treated together.
-pub(crate) fn changes_to_join(start: &StepStart<'_>, tried: &Attempt) -> Option<BTreeSet<usize>> {
-    joinable(start, &tried.event_functions, &tried.passed, tried.reached.step)
+pub(crate) fn changes_to_join(
+    start: &StepStart<'_>,
+    reached: &Reached,
+    events: &StepEvents,
+) -> Option<BTreeSet<usize>> {
+    joinable(start, &events.functions, &events.passed, reached.step)
 }
 
 /// The end of a trial step that passes these contact changes, if they can be treated together.
 pub(crate) fn join_changes(
     start: &StepStart<'_>,
     first: &BTreeSet<usize>,
-    tried: &Attempt,
+    reached: &Reached,
+    events: &StepEvents,
     work: &mut Work,
-) -> Option<Joined> {
-    let Attempt { reached, event_functions, .. } = tried;
+) -> Option<StepEnd> {
     join(
         start,
         first,
@@ -133,7 +127,7 @@ pub(crate) fn join_changes(
             step: reached.step,
             factorisation: None,
         },
-        event_functions,
+        &events.functions,
         work,
     )
 }
@@ -146,7 +140,7 @@ pub(crate) fn join_foreseen(
     ends: &[End],
     load_sign: f64,
     work: &mut Work,
-) -> Option<Option<Joined>> {
+) -> Option<Option<StepEnd>> {
     start.loading.structure.layout()?;
     let event_functions = start.event_functions(ends, load_sign);
     let passes = |event_function: &EventFunction| {
@@ -189,7 +183,7 @@ fn join(
     far: UnchangedStepEnd<'_>,
     event_functions: &[EventFunction],
     work: &mut Work,
-) -> Option<Joined> {
+) -> Option<StepEnd> {
     let mut serving = None;
     let EndModes { modes, corrected, asked, negative } = end_modes(start, first, far, &mut serving, work)?;
     let end = StepStart { modes: &modes, ..*start };
@@ -210,7 +204,8 @@ fn join(
     let analysed = start.loading.structure.allows_dense();
     let signature = reached.determinant.filter(|_| analysed);
     let signature = signature.map(|determinant| Signature { determinant, negative: Some(negative) });
-    Some(Joined { reached, changes: changes as u64, signature, unchanged: far.rate.clone() })
+    let joined = JoinedChanges { count: changes as u64, unchanged: far.rate.clone() };
+    Some(StepEnd { joined: Some(joined), ..StepEnd::in_mode(reached, None, signature) })
 }
 
 /// Whether changes in a step may be treated together: not where a contact with friction is closed.

@@ -2,11 +2,12 @@
 
 use crate::branching::bifurcation::branch_directions::tolerances::COINCIDENCE_COSINE;
 use crate::branching::bifurcation::locate::Crossing;
+use crate::branching::bifurcation::step_end::StepEnd;
 use crate::branching::directions::feasible_direction::DirectionChoice;
 use crate::branching::selection::selection_rule;
 use crate::continuation::increment::point_classification::{self, Arrival, Came};
 use crate::continuation::increment::stages;
-use crate::continuation::increment::step_control::{self, AcceptedStep};
+use crate::continuation::increment::step_control::{self, StepBalance};
 use crate::continuation::increment::tolerances::UNSTRESSED_MULTIPLE;
 use crate::continuation::path_state::motion::JumpCause;
 use crate::continuation::path_state::path_context::{Emitted, PathTrace};
@@ -21,15 +22,16 @@ use crate::step::interpolation::PlacedPoint;
 
 /// Makes the reached point the present one and classifies it; `None` where its continuation would violate the contact
 /// laws.
-pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Option<Increment> {
-    let (reached, mut added) = (accepted.reached, accepted.added);
+pub(crate) fn accept(trace: &mut PathTrace<'_>, end: StepEnd, balance: StepBalance) -> Option<Increment> {
+    let joined = end.changes();
+    let (reached, mut added) = (end.reached, balance.added);
     let step = trace.scene.arc_length(&trace.at.here.state, &reached.corrected.state, reached.step);
     added.step = step;
     trace.at.totals.add(&added);
     trace.at.counts.increments += 1;
     let here = &mut trace.at.here;
     let before = std::mem::replace(&mut here.state, reached.corrected.state);
-    let begun = here.rate.take().filter(|_| accepted.joined == 0);
+    let begun = here.rate.take().filter(|_| joined == 0);
     let changes = reached.event.is_some_and(EventFunction::is_of_contact);
     here.apart = (changes && here.before.is_none()).then_some(reached.step);
     (here.before, here.is_factorised) = (None, false);
@@ -40,10 +42,9 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
     here.is_singular &= !bends;
     let begun = begun.filter(|_| !bends);
     let negative_before = here.signature.and_then(|signature| signature.negative);
-    here.signature = accepted.signature;
+    here.signature = end.signature;
     let arriving = Arriving { modes: here.modes.clone(), load_sign: here.load_sign, counts: trace.at.counts };
     let at_bound = stages::at_bound(trace, &reached.rate);
-    let joins = accepted.joined > 0;
     let arrival_rate = trace.passed.is_some().then(|| reached.rate.clone());
     let arrived = changes.then(|| trace.at.here.state.reactions.clone());
     let came = Came {
@@ -53,11 +54,11 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
         nearby: reached.nearby,
         motions: reached.motions,
     };
-    let mut arrival = what_it_is(trace, &mut modes, accepted.joined, reached.event, accepted.crossing, came);
-    if accepted.returned {
+    let mut arrival = what_it_is(trace, &mut modes, joined, reached.event, end.crossing, came);
+    if end.returned {
         arrival.stop = Some(StopReason::Cycle);
     }
-    let changed = joins || !all_continue(&trace.at.here.modes, &modes);
+    let changed = joined > 0 || !all_continue(&trace.at.here.modes, &modes);
     let creeps = step_control::reason_of_creep(trace, reached.step, changed || at_bound || arrival.stage_ends);
     arrival.stop = arrival.stop.or(creeps);
     // A contact change may have redistributed reactions.
@@ -87,7 +88,7 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
         taken: arrival.taken,
         residual: residual_of_forces(trace, reached.corrected.residual, reached.corrected.force_scale),
         error_estimate: reached.error_estimate,
-        mode_named: accepted.mode_named.map(|named| named && !arrival.unconfirmed),
+        mode_named: balance.mode_named.map(|named| named && !arrival.unconfirmed),
         arriving: Some(arriving),
     });
     if !changes && let Some(rate) = begun {

@@ -11,8 +11,8 @@
 //! event may lie just past the point. An increment whose end no search finds counts as a fall-back: the point found by
 //! the mode's equations is retained.
 
+use crate::branching::bifurcation::step_end::StepEnd;
 use crate::continuation::increment::mpec_verification;
-use crate::continuation::increment::step_control::AcceptedStep;
 use crate::continuation::increment::tolerances::{ADAPTED_ARC_LENGTH, MODE_BOUNDARY_TOLERANCE, POINT_DISTANCE};
 use crate::continuation::path_state::path_context::PathTrace;
 use crate::mechanics::contact::Mode;
@@ -42,35 +42,34 @@ struct Left {
     iterates: Vec<ProgramIterate>,
 }
 
-/// Finds by its program the end of an increment that is about to be accepted.
-pub(crate) fn found_by_program(trace: &mut PathTrace<'_>, rate: &Rate, mut accepted: AcceptedStep) -> AcceptedStep {
-    let (found, Left { counts, work, iterates }) = search_end(trace, rate, &accepted);
+/// Finds by its program the end of an increment that is about to be accepted. Returns whether the program has it.
+pub(crate) fn found_by_program(trace: &mut PathTrace<'_>, rate: &Rate, end: &mut StepEnd) -> bool {
+    let (found, Left { counts, work, iterates }) = search_end(trace, rate, end);
     trace.at.totals.work = work;
     counts.into_iter().for_each(|counts| mpec_verification::count(trace, counts));
     if let Some(kept) = &mut trace.iterates {
         *kept = iterates;
     }
-    accepted.mode_named = Some(found.is_some());
     let Some(found) = found else {
         trace.at.totals.work.mpec_fallbacks += 1;
-        return accepted;
+        return false;
     };
-    let reached = &mut accepted.reached;
+    let reached = &mut end.reached;
     // Next to stiff elements round-off may leave a larger residual at one of the two points than at the other.
     let is_as_good = found.corrected.residual <= reached.corrected.residual.max(f64::EPSILON);
-    if is_as_good && reached.event.is_none() && accepted.crossing.is_none() && !accepted.returned {
+    if is_as_good && reached.event.is_none() && end.crossing.is_none() && !end.returned {
         let hardness = reached.corrected.iterations_to_small;
         (reached.corrected, reached.rate) = (found.corrected, found.rate);
         reached.corrected.iterations_to_small = hardness;
     }
-    accepted
+    true
 }
 
-fn search_end(trace: &PathTrace<'_>, rate: &Rate, accepted: &AcceptedStep) -> (Option<Box<Reached>>, Left) {
-    let (here, reached) = (&trace.at.here, &accepted.reached);
+fn search_end(trace: &PathTrace<'_>, rate: &Rate, step_end: &StepEnd) -> (Option<Box<Reached>>, Left) {
+    let (here, reached) = (&trace.at.here, &step_end.reached);
     let mut left = Left { work: trace.at.totals.work, ..Left::default() };
     let (loading, base, step) = (trace.loading(), &here.state, reached.step);
-    let modes = if accepted.joined > 0 { &reached.corrected.modes } else { &here.modes };
+    let modes = if step_end.joined.is_some() { &reached.corrected.modes } else { &here.modes };
     if step <= 0.0 {
         return (Some(reached.clone()), left);
     }

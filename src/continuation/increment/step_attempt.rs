@@ -1,12 +1,12 @@
 //! One attempt of a step: how far its mode extends, and whether the point reached is admissible.
 
-use crate::branching::bifurcation::locate::{self, Crossing, Located, LocatedEnd};
+use crate::branching::bifurcation::locate::{self, Crossing, Located};
 use crate::branching::bifurcation::singularity::test_functions::{self, Signature, SignatureChange};
+use crate::branching::bifurcation::step_end::StepEnd;
 use crate::branching::bifurcation::{simultaneous_limit_points, stage_end_near_singular_point};
 use crate::continuation::contact_changes::prediction;
 use crate::continuation::contact_changes::prediction::ForeseenChange;
 use crate::continuation::contact_changes::simultaneous;
-use crate::continuation::contact_changes::simultaneous::Joined;
 use crate::continuation::increment::step_control;
 use crate::continuation::increment::tolerances::{LARGEST_SHARE_OF_STEP, NEXT_CHANGE_RATIO};
 use crate::continuation::path_state::path_context::PathTrace;
@@ -18,7 +18,7 @@ use crate::step::corrector::cached_factorisation::CachedFactorisation;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::event_functions::EventFunction;
 use crate::step::lift_off;
-use crate::step::mode_step::{Attempt, Reached, Refused, StepStart};
+use crate::step::mode_step::{Reached, Refused, StepEvents, StepStart};
 
 /// Largest number of shorter steps tried where a change of signature cannot be resolved.
 const MOST_UNRESOLVED: u64 = 4;
@@ -68,40 +68,6 @@ impl Tries {
     }
 }
 
-/// The end of a step.
-enum AttemptEnd {
-    Joined(Joined),
-    AtEvent(Box<Reached>),
-}
-
-impl AttemptEnd {
-    fn reached(&self) -> &Reached {
-        match self {
-            Self::Joined(joined) => &joined.reached,
-            Self::AtEvent(reached) => reached,
-        }
-    }
-}
-
-/// The result of an attempt.
-pub(crate) struct Tried {
-    pub reached: Box<Reached>,
-    /// The smooth bifurcation at the point, if it is one.
-    pub crossing: Option<Crossing>,
-    /// Signature just past the point.
-    pub signature: Option<Signature>,
-    /// The point is the one where the stage began.
-    pub returned: bool,
-    /// The number of contact changes treated together within the step, and the direction at its end without them.
-    pub joined: Option<(u64, Rate)>,
-}
-
-impl Tried {
-    fn plain(reached: Box<Reached>, crossing: Option<Crossing>, signature: Option<Signature>) -> Self {
-        Self { reached, crossing, signature, returned: false, joined: None }
-    }
-}
-
 /// Attempts a step of this length along the present direction.
 pub(crate) fn try_step(
     trace: &PathTrace<'_>,
@@ -110,7 +76,7 @@ pub(crate) fn try_step(
     sought: &Sought,
     tries: &mut Tries,
     work: &mut Work,
-) -> Result<Tried, Refused> {
+) -> Result<StepEnd, Refused> {
     let here = &trace.at.here;
     let start = StepStart {
         loading: trace.loading(),
@@ -125,44 +91,36 @@ pub(crate) fn try_step(
     let ends = &trace.scene.stages[trace.at.stage].ends;
     let outcome = end_of_step(trace, &start, step, sought, tries, work);
     let is_lost = match &outcome {
-        Ok(ending) => {
-            let reached = ending.reached();
-            matches!(reached.event, Some(EventFunction::End(_))) && reached.determinant.is_none()
-        }
+        Ok(end) => matches!(end.reached.event, Some(EventFunction::End(_))) && end.reached.determinant.is_none(),
         Err(refused) => matches!(refused, Refused::Newton(_)),
     };
     let bounded = is_lost
         .then(|| stage_end_near_singular_point::beside_singular(&start, step, ends, here.load_sign, tries.known, work))
         .flatten();
-    let back = outcome.as_ref().ok().and_then(|ending| step_control::way_back(trace, &start, ending.reached(), work));
-    let tried = if let Some(back) = back {
-        Tried { returned: true, ..Tried::plain(back, None, None) }
-    } else if let Some((reached, crossing, signature)) = bounded {
-        Tried::plain(reached, crossing, signature)
+    let back = outcome.as_ref().ok().and_then(|end| step_control::way_back(trace, &start, &end.reached, work));
+    let end = if let Some(back) = back {
+        StepEnd { returned: true, ..StepEnd::plain(back) }
+    } else if let Some(bounded) = bounded {
+        bounded
     } else {
-        match outcome? {
-            AttemptEnd::Joined(Joined { reached, changes, signature, unchanged }) => {
-                Tried { joined: Some((changes, unchanged)), ..Tried::plain(reached, None, signature) }
-            }
-            // The equations of a straight path are the same at both ends, and nowhere singular in between.
-            AttemptEnd::AtEvent(reached) if sought.jumps(step) => Tried::plain(reached, None, None),
-            AttemptEnd::AtEvent(reached) => {
-                let known = tries.known.or_else(|| Signature::past_start(&start, reached.step, &mut None, work));
-                tries.known = known;
-                let may_refuse = tries.unresolved < MOST_UNRESOLVED;
-                let (reached, crossing, signature) = first_crossing(&start, known, reached, may_refuse, work)?;
-                Tried::plain(reached, crossing, signature)
-            }
+        let end = outcome?;
+        // The equations of a straight path are the same at both ends, and nowhere singular in between.
+        if end.joined.is_some() || sought.jumps(step) {
+            end
+        } else {
+            let known = tries.known.or_else(|| Signature::past_start(&start, end.reached.step, &mut None, work));
+            tries.known = known;
+            first_crossing(&start, known, end.reached, tries.unresolved < MOST_UNRESOLVED, work)?
         }
     };
-    let corrected = &tried.reached.corrected;
+    let corrected = &end.reached.corrected;
     let forces = trace.at.totals.force_scale.max(corrected.force_scale);
     if !natural_residual::holds(trace.loading(), &corrected.state, forces) {
         Err(Refused::Unlawful)
     } else if step_control::shrinks_to_a_point(trace, &corrected.state) {
         Err(Refused::Collapsed)
     } else {
-        Ok(tried)
+        Ok(end)
     }
 }
 
@@ -174,32 +132,32 @@ fn end_of_step(
     sought: &Sought,
     tries: &mut Tries,
     work: &mut Work,
-) -> Result<AttemptEnd, Refused> {
+) -> Result<StepEnd, Refused> {
     let (ends, load_sign) = (&trace.scene.stages[trace.at.stage].ends, trace.at.here.load_sign);
     let may_join = sought.may_join && !sought.jumps(step);
     let foreseen = may_join.then(|| simultaneous::join_foreseen(start, step, ends, load_sign, work)).flatten();
     if let Some(joined) = foreseen {
         tries.joined = Some(joined.is_some());
         // Where the changes cannot be treated together the step has to end at the first of them.
-        return joined.map(AttemptEnd::Joined).ok_or(Refused::Apart);
+        return joined.ok_or(Refused::Apart);
     }
-    let tried = match attempt(trace, start, step, sought, tries, work) {
-        Ok(tried) => tried,
+    let (reached, events) = match attempt(trace, start, step, sought, tries, work) {
+        Ok(reached) => reached,
         Err(refused) => {
             let leaves = lift_off::ahead(start, step, (ends, load_sign), work);
-            return leaves.map(AttemptEnd::AtEvent).ok_or(refused);
+            return leaves.map(StepEnd::plain).ok_or(refused);
         }
     };
-    if may_join && let Some(first) = simultaneous::changes_to_join(start, &tried) {
-        let joined = simultaneous::join_changes(start, &first, &tried, work);
+    if may_join && let Some(first) = simultaneous::changes_to_join(start, &reached, &events) {
+        let joined = simultaneous::join_changes(start, &first, &reached, &events, work);
         tries.joined = Some(joined.is_some());
         if let Some(joined) = joined {
-            return Ok(AttemptEnd::Joined(joined));
+            return Ok(joined);
         }
     }
-    let ended = start.stop_at_event(tried, ends, simultaneous_limit_points::locate, work);
+    let ended = start.stop_at_event(reached, events, ends, simultaneous_limit_points::locate, work);
     let ended = ended.or_else(|refused| lift_off::ahead(start, step, (ends, load_sign), work).ok_or(refused));
-    ended.map(AttemptEnd::AtEvent)
+    ended.map(StepEnd::plain)
 }
 
 /// The extent of the mode: to the next of several changes if it is near, to a predicted change, or over a whole step.
@@ -210,7 +168,7 @@ fn attempt(
     sought: &Sought,
     tries: &mut Tries,
     work: &mut Work,
-) -> Result<Attempt, Refused> {
+) -> Result<(Box<Reached>, StepEvents), Refused> {
     let here = &trace.at.here;
     let (ends, load_sign) = (&trace.scene.stages[trace.at.stage].ends, here.load_sign);
     let is_straight = sought.jumps(step);
@@ -221,8 +179,8 @@ fn attempt(
     let next = next.and_then(|next| {
         let mut serving = None;
         tries.known = tries.known.or_else(|| Signature::past_start(start, next, &mut serving, work));
-        let tried = start.attempt(next, None, serving, ends, load_sign, work).ok()?;
-        (!tried.passed.is_empty()).then_some(tried)
+        let (reached, events) = start.attempt(next, None, serving, ends, load_sign, work).ok()?;
+        (!events.passed.is_empty()).then_some((reached, events))
     });
     if let Some(next) = next {
         return Ok(next);
@@ -243,13 +201,13 @@ fn first_crossing(
     reached: Box<Reached>,
     may_refuse: bool,
     work: &mut Work,
-) -> Result<LocatedEnd, Refused> {
-    let (reached, crossing, after) = crossing_in_mode(start, before, reached, may_refuse, work)?;
-    match test_functions::loosened(start, &reached).and_then(|loose| crossing_when_loose(start, &loose, &reached, work))
-    {
-        Some((point, crossing)) => Ok((point, Some(crossing), before)),
-        None => Ok((reached, crossing, after)),
-    }
+) -> Result<StepEnd, Refused> {
+    let end = crossing_in_mode(start, before, reached, may_refuse, work)?;
+    let loose = test_functions::loosened(start, &end.reached);
+    Ok(match loose.and_then(|loose| crossing_when_loose(start, &loose, &end.reached, work)) {
+        Some((point, crossing)) => StepEnd::in_mode(point, Some(crossing), before),
+        None => end,
+    })
 }
 
 /// The first smooth bifurcation of a step in loosened modes.
@@ -287,7 +245,7 @@ fn crossing_in_mode(
     reached: Box<Reached>,
     may_refuse: bool,
     work: &mut Work,
-) -> Result<LocatedEnd, Refused> {
+) -> Result<StepEnd, Refused> {
     let Some(before) = before else {
         // The start is singular: the signature is known from the end of the step on.
         let state = &reached.corrected.state;
@@ -295,23 +253,23 @@ fn crossing_in_mode(
         let regular = if is_limit { None } else { test_functions::sign_at_end(start, &reached, work) };
         let after = regular
             .and_then(|sign| Signature::with_determinant(start.loading, start.modes, start.state, state, sign, work));
-        return Ok((reached, None, after));
+        return Ok(StepEnd::in_mode(reached, None, after));
     };
     let (after, change) = test_functions::compare(start, before, &reached, work);
     if after.is_none() && reached.event.is_none() && may_refuse {
         return Err(Refused::Unresolved);
     }
     if change == SignatureChange::None {
-        return Ok((reached, None, after));
+        return Ok(StepEnd::in_mode(reached, None, after));
     }
     match locate::locate(start, before, change, &reached, work) {
         Some(Located { mut point, crossing, .. }) if point.step < reached.step || crossing.eigenvalues == 0 => {
             point.corrected.iterations_to_small = reached.corrected.iterations_to_small;
             let after = crossing.after;
-            Ok((point, Some(crossing), Some(after)))
+            Ok(StepEnd::in_mode(point, Some(crossing), Some(after)))
         }
-        Some(_) => Ok((reached, None, Some(before))),
+        Some(_) => Ok(StepEnd::in_mode(reached, None, Some(before))),
         None if may_refuse => Err(Refused::Unresolved),
-        None => Ok((reached, None, after)),
+        None => Ok(StepEnd::in_mode(reached, None, after)),
     }
 }

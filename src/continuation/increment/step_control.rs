@@ -1,15 +1,14 @@
 //! Step-length control by the path's turn, Newton's iterations and the energy balance of the increment.
 
 use crate::algebra::scalar_root::find_root;
-use crate::branching::bifurcation::locate::Crossing;
-use crate::branching::bifurcation::singularity::test_functions::Signature;
+use crate::branching::bifurcation::step_end::StepEnd;
 use crate::branching::directions::arrival_tangent::Incoming;
 use crate::branching::directions::feasible_direction::PriorMotion;
 use crate::branching::selection::selection_rule;
 use crate::continuation::contact_changes::piecewise_linear;
 use crate::continuation::contact_changes::prediction::{self, ForeseenChange};
 use crate::continuation::contact_changes::simultaneous::may_join_at;
-use crate::continuation::increment::step_attempt::{self, Sought, Tried, Tries};
+use crate::continuation::increment::step_attempt::{self, Sought, Tries};
 use crate::continuation::increment::tolerances::{
     CREEPING_LENGTH, CREEPING_SHARE, LARGEST_CURVATURE_GROWTH, LARGEST_STEP_GROWTH, LENGTH_PAST_BEND, REJECTION_FACTOR,
     SHORT_STEP, SMALLEST_COMPLETED_SHARE, SMALLEST_STRETCH, TARGET_IMBALANCE, TARGET_ITERATIONS, TARGET_TURN,
@@ -27,7 +26,6 @@ use crate::mechanics::problem::state::{Rate, State};
 use crate::mechanics::problem::work_and_dissipation::{self, IncrementWork};
 use crate::mechanics::structure::elements::COLLAPSED;
 use crate::model::request::{Events, Method};
-use crate::result::increment::Energy;
 use crate::result::stop_reason::StopReason;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
@@ -39,35 +37,17 @@ use crate::step::mode_step::{Reached, Refused, StepStart};
 /// step aims, and a path that takes more oscillates.
 const MOST_CREEPING: u64 = 48;
 
-/// A point reached, with the energies of the increment.
-pub(crate) struct AcceptedStep {
-    pub reached: Box<Reached>,
+/// What a step adds to the path, and how far it turns.
+pub(crate) struct StepBalance {
     pub added: Added,
     /// Turn of the direction (radians), without that of contact changes within the step.
     pub turned: f64,
     /// Whether the increment's program confirmed the mode; `None` where it was not solved.
     pub mode_named: Option<bool>,
-    /// The point is the one where the stage began.
-    pub returned: bool,
-    /// The smooth bifurcation at the point, if it is one.
-    pub crossing: Option<Crossing>,
-    /// Signature just past the point, in the mode that led there.
-    pub signature: Option<Signature>,
-    /// Number of contact changes within the step that are treated together; 0 where its mode lasted.
-    pub joined: u64,
 }
 
-impl AcceptedStep {
-    /// Records a step in which contact changes are treated together. Nothing slides against friction in it: the work
-    /// equals the change of stored energy.
-    fn join(&mut self, changes: u64, before: &Energy) {
-        self.joined = changes;
-        self.added.external_work = self.added.strain - before.strain;
-    }
-}
-
-/// Attempts steps until a point is accepted.
-pub(crate) fn step(trace: &mut PathTrace<'_>) -> Result<AcceptedStep, StopReason> {
+/// Attempts steps until the end of one is accepted.
+pub(crate) fn step(trace: &mut PathTrace<'_>) -> Result<(StepEnd, StepBalance), StopReason> {
     let mut sought = sought_step(trace);
     let Some(rate) = trace.at.here.rate.take() else { return Err(StopReason::NoDirection) };
     let stepped = step_along(trace, &rate, &mut sought);
@@ -75,8 +55,12 @@ pub(crate) fn step(trace: &mut PathTrace<'_>) -> Result<AcceptedStep, StopReason
     stepped
 }
 
-/// Attempts steps along the present direction until a point is accepted.
-fn step_along(trace: &mut PathTrace<'_>, rate: &Rate, sought: &mut Sought) -> Result<AcceptedStep, StopReason> {
+/// Attempts steps along the present direction until the end of one is accepted.
+fn step_along(
+    trace: &mut PathTrace<'_>,
+    rate: &Rate,
+    sought: &mut Sought,
+) -> Result<(StepEnd, StepBalance), StopReason> {
     let least = trace.scene.analysis.arc_length.min;
     let mut step = sought.step();
     let mut was_shortened = false;
@@ -93,21 +77,22 @@ fn step_along(trace: &mut PathTrace<'_>, rate: &Rate, sought: &mut Sought) -> Re
             sought.may_join &= joined;
         }
         match outcome {
-            Ok(tried) => match weigh(trace, rate, tried, step, sought, was_shortened) {
+            Ok(mut end) => match weigh(trace, rate, &mut end, step, sought, was_shortened) {
                 // An interrupted search says nothing about its increment.
-                Ok(accepted) if accepted.mode_named == Some(false) && trace.cancel.is_cancelled() => {
+                Ok(balance) if balance.mode_named == Some(false) && trace.cancel.is_cancelled() => {
                     return Err(StopReason::Cancelled);
                 }
-                Ok(accepted) => return Ok(accepted),
+                Ok(balance) => return Ok((end, balance)),
                 Err(factor) => {
                     step *= factor;
                     was_shortened = true;
                 }
             },
             Err(Refused::AtStart(event_function)) if event_function.is_of_contact() && mode_ends_here(trace, rate) => {
-                let mut accepted = balance(trace, rate, without_step(trace, event_function, rate));
-                accepted.mode_named = is_named_by_program(trace).then_some(true);
-                return Ok(accepted);
+                let end = StepEnd::plain(without_step(trace, event_function, rate));
+                let mut balance = balance(trace, rate, &end);
+                balance.mode_named = is_named_by_program(trace).then_some(true);
+                return Ok((end, balance));
             }
             Err(Refused::Apart) => {
                 // Each of the changes then ends a step, the first of them the present one.
@@ -160,37 +145,30 @@ fn sought_step(trace: &mut PathTrace<'_>) -> Sought {
     Sought { ordinary, jump, foreseen, may_join }
 }
 
-/// Accepts a point with the energies of its increment and chooses the next step length; returns the factor by which a
-/// step too long for them is to be shortened otherwise.
+/// The energies of an increment that is accepted, with which the next step length is chosen; otherwise the factor by
+/// which the step, too long for them, is to be shortened.
 fn weigh(
     trace: &mut PathTrace<'_>,
     rate: &Rate,
-    tried: Tried,
+    end: &mut StepEnd,
     step: f64,
     sought: &Sought,
     was_shortened: bool,
-) -> Result<AcceptedStep, f64> {
+) -> Result<StepBalance, f64> {
     let (least, most) = (trace.scene.analysis.arc_length.min, trace.scene.analysis.arc_length.max);
-    let Tried { reached, crossing, signature, returned, joined } = tried;
-    let mut accepted = balance(trace, rate, reached);
-    (accepted.crossing, accepted.signature, accepted.returned) = (crossing, signature, returned);
-    if let Some((changes, unchanged)) = joined {
-        accepted.join(changes, &trace.at.totals.energy);
-        // The kinks of a step with contact changes are irrelevant to its length.
-        accepted.turned = rate.angle(&unchanged);
-    }
-    let factor = next_step_factor(trace, &accepted, step, was_shortened);
+    let mut balance = balance(trace, rate, end);
+    let factor = next_step_factor(trace, end, &balance, step, was_shortened);
     if factor <= REJECTION_FACTOR && step * factor >= least {
         return Err(factor);
     }
-    let factor = factor.min(factor_foreseen(trace, rate, &accepted, step));
+    let factor = factor.min(factor_foreseen(trace, rate, end.reached.step, balance.turned, step));
     // Where the mode ends inside the step, the program verifies the next mode from there.
     if trace.scene.analysis.skips_certificate() && is_named_by_program(trace) {
-        accepted = mpec_increments::found_by_program(trace, rate, accepted);
+        balance.mode_named = Some(mpec_increments::found_by_program(trace, rate, end));
     } else {
-        accepted.mode_named = is_named_by_program(trace).then(|| match accepted.joined {
-            0 => mpec_verification::program_keeps_mode(trace, rate, &accepted.reached, step),
-            _ => mpec_verification::program_joins_changes(trace, rate, step, &accepted.reached.corrected.modes),
+        balance.mode_named = is_named_by_program(trace).then(|| match &end.joined {
+            None => mpec_verification::program_keeps_mode(trace, rate, &end.reached, step),
+            Some(_) => mpec_verification::program_joins_changes(trace, rate, step, &end.reached.corrected.modes),
         });
     }
     if !sought.jumps(step) {
@@ -198,7 +176,7 @@ fn weigh(
         let next = if was_cut { sought.ordinary } else { step * factor };
         trace.at.step = next.clamp(least, most);
     }
-    Ok(accepted)
+    Ok(balance)
 }
 
 /// The reason to stop a path that no longer makes progress with steps of this length, if it does not. A step at the end
@@ -293,32 +271,37 @@ fn reason_of_underflow(trace: &PathTrace<'_>) -> StopReason {
     if stretch < COLLAPSED { StopReason::CollapsedBar } else { StopReason::StepUnderflow }
 }
 
-/// Work, dissipation and strain energy of the increment to a point reached.
-fn balance(trace: &PathTrace<'_>, rate: &Rate, reached: Box<Reached>) -> AcceptedStep {
-    let start = (&trace.at.here.state, rate);
+/// Work, dissipation and strain energy of the increment to the end of a step.
+fn balance(trace: &PathTrace<'_>, rate: &Rate, step_end: &StepEnd) -> StepBalance {
+    let (reached, start) = (&step_end.reached, (&trace.at.here.state, rate));
     let end = (&reached.corrected.state, &reached.rate);
     let (loading, modes, turned) = (trace.loading(), &trace.at.here.modes, rate.angle(&reached.rate));
     let work = work_and_dissipation::work_and_dissipation(loading, modes, start, end, turned);
-    let IncrementWork { external: external_work, dissipated, largest_part: largest_work, of_pattern } = work;
+    let IncrementWork { external, dissipated, largest_part: largest_work, of_pattern } = work;
     let strain = trace.structure.strain_energy(&reached.corrected.state.displacement) - trace.initial_strain;
     let (step, force_scale) = (reached.step, reached.corrected.force_scale);
     let work_of_pattern = of_pattern;
+    // No contact slides against friction where changes are treated together: the work equals the change of stored
+    // energy. The kinks of such a step are irrelevant to the length of the next.
+    let (external_work, turned) = match &step_end.joined {
+        Some(joined) => (strain - trace.at.totals.energy.strain, rate.angle(&joined.unchanged)),
+        None => (external, turned),
+    };
     let added = Added { step, external_work, largest_work, work_of_pattern, dissipated, strain, force_scale };
-    let (mode_named, crossing, signature) = (None, None, None);
-    AcceptedStep { reached, added, turned, mode_named, returned: false, crossing, signature, joined: 0 }
+    StepBalance { added, turned, mode_named: None }
 }
 
 /// Factor of the next step where the curvature of the path grows: it is predicted to grow as it did from the step
 /// before to the present one (predictive control: K. Gustafsson, ACM Trans. Math. Softw. 20 (1994) 496,
 /// doi:10.1145/198429.198437).
-fn factor_foreseen(trace: &PathTrace<'_>, rate: &Rate, accepted: &AcceptedStep, tried: f64) -> f64 {
+fn factor_foreseen(trace: &PathTrace<'_>, rate: &Rate, length: f64, turned: f64, tried: f64) -> f64 {
     let here = &trace.at.here;
-    let before = here.before.as_ref().filter(|_| accepted.reached.step > 0.0);
+    let before = here.before.as_ref().filter(|_| length > 0.0);
     let curvature_before = before.map(|before| unit(&before.rate).angle(rate) / -before.place);
     let Some(curvature_before) = curvature_before.filter(|curvature| *curvature > 0.0) else {
         return f64::INFINITY;
     };
-    let curvature = accepted.turned / accepted.reached.step;
+    let curvature = turned / length;
     let growth = (curvature / curvature_before).min(LARGEST_CURVATURE_GROWTH);
     if growth <= 1.0 {
         return f64::INFINITY;
@@ -327,13 +310,18 @@ fn factor_foreseen(trace: &PathTrace<'_>, rate: &Rate, accepted: &AcceptedStep, 
 }
 
 /// Factor of the next step by the path's turn, Newton's iterations and the energy balance.
-fn next_step_factor(trace: &PathTrace<'_>, accepted: &AcceptedStep, tried: f64, was_shortened: bool) -> f64 {
-    let reached = &accepted.reached;
+fn next_step_factor(
+    trace: &PathTrace<'_>,
+    end: &StepEnd,
+    balance: &StepBalance,
+    tried: f64,
+    was_shortened: bool,
+) -> f64 {
+    let (reached, added) = (&end.reached, &balance.added);
     let done = (reached.step / tried).clamp(0.1, 1.0);
-    let turn = accepted.turned / done;
+    let turn = balance.turned / done;
     let by_turn = TARGET_TURN / turn.max(1e-3 * TARGET_TURN);
     let by_work = TARGET_ITERATIONS / reached.corrected.iterations_to_small.max(1) as f64;
-    let added = &accepted.added;
     let imbalance = (added.external_work - added.dissipated - (added.strain - trace.at.totals.energy.strain)).abs();
     // Where hardly any energy is stored, the effect of round-off in the displacements and in the gaps on the work says
     // nothing about the step.

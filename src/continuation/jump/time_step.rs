@@ -172,13 +172,13 @@ fn follow(inner: &mut PathTrace<'_>) -> Result<[f64; 2], NotMoved> {
             break;
         }
         inner.refer();
-        let accepted = match step_control::step(inner) {
+        let (end, balance) = match step_control::step(inner) {
             Ok(accepted) => accepted,
             Err(StopReason::Cancelled) => return Err(NotMoved::Cancelled),
             Err(_) => break,
         };
-        of_pattern.iter_mut().zip(accepted.added.work_of_pattern).for_each(|(sum, part)| *sum += part);
-        if acceptance::accept(inner, accepted).is_none() {
+        of_pattern.iter_mut().zip(balance.added.work_of_pattern).for_each(|(sum, part)| *sum += part);
+        if acceptance::accept(inner, end, balance).is_none() {
             break;
         }
         if inner.at.stage_over {

@@ -160,7 +160,7 @@ fn increment(trace: &mut PathTrace<'_>) -> Option<Increment> {
         return Some(stages::begin_stage(trace));
     }
     match step_control::step(trace) {
-        Ok(accepted) => acceptance::accept(trace, accepted),
+        Ok((end, balance)) => acceptance::accept(trace, end, balance),
         Err(reason) => {
             trace.end(reason);
             None

@@ -54,9 +54,6 @@ pub(crate) const WIDTHS: [f64; 4] = [2e-2, 4e-3, 1e-3, 2e-4];
 /// Places in a bracket, relative to its length, from which the search may begin.
 const AHEAD: [f64; 4] = [0.0, 1e-4, 1e-3, 1e-2];
 
-/// The end of a step: a point, its crossing if it is a smooth bifurcation, and the signature just past it where known.
-pub(crate) type LocatedEnd = (Box<Reached>, Option<Crossing>, Option<Signature>);
-
 /// A crossing with the regular points between which it was found, where the dense method found it.
 pub(crate) struct Located {
     pub point: Box<Reached>,
