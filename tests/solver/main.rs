@@ -12,6 +12,7 @@ mod bounds;
 mod by_program;
 mod capstan;
 mod capstan_extremes;
+mod capstan_rod;
 mod changes_at_once;
 mod checkpoint;
 mod coinciding;

@@ -101,7 +101,7 @@ pub(crate) const ROUNDINGS_PER_ENTRY: f64 = 8.0;
 /// trial steps from 1e-6 to 1e-3.
 pub(crate) const STEADY_RATE_CHANGE: f64 = 0.5;
 
-/// Largest negative value of a watched quantity, over its scale, that is permitted after a trial step: the residual
-/// 1e-11 up to which a point is accepted. A true violation is of second order in the step and exceeds the bound from
-/// the trial step 1e-5 on; for the shortest step 1e-6 the slope shows the violation.
+/// Largest negative value of a watched quantity, over its scale, that is permitted after a trial step, beyond what is
+/// below zero at its start: the residual 1e-11 up to which a point is accepted. A true violation is of second order in
+/// the step and exceeds the bound from the trial step 1e-5 on; for the shortest step 1e-6 the slope shows the violation.
 pub(crate) const TRIAL_VIOLATION: f64 = 1e-11;

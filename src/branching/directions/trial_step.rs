@@ -272,7 +272,9 @@ impl Trial<'_> {
                 | EventFunction::Return { .. } => CLEAR_SLOPE,
                 EventFunction::LoadRate { .. } | EventFunction::SurfaceEnd(_) | EventFunction::End(_) => CLEAR_SLOPE,
             };
-            if last < -TRIAL_VIOLATION || grown < -clear {
+            // What is below zero at the start already, within the tolerance of a point, is no fault of the direction.
+            let begun = if tendency.is_some() { (first / scale).min(0.0) } else { 0.0 };
+            if last < begun - TRIAL_VIOLATION || grown < -clear {
                 culprits.extend(contacts);
             }
             unclear |= grown <= clear;
