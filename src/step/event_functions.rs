@@ -22,7 +22,8 @@ use crate::mechanics::problem::contact_jacobian;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_contact_forces;
 use crate::mechanics::problem::state::{Rate, State};
-use crate::step::tolerances::{EVENT_TOLERANCE, LARGEST_ROUNDING, ROUND_OFF_MULTIPLE, SHORTEST_PART, WAY_MARGIN};
+use crate::mechanics::problem::tolerances::LARGEST_ROUNDING_OF_FORCE;
+use crate::step::tolerances::{EVENT_TOLERANCE, SHORTEST_PART, WAY_MARGIN};
 
 /// An event function; negative values mean that the event has been passed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -249,13 +250,13 @@ impl EventFunction {
     /// The value up to which a negative quantity does not count as passed.
     pub fn zero(self, loading: Loading<'_>, state: &State, force_scale: f64) -> f64 {
         let scale = self.scale(loading, state, force_scale);
-        (EVENT_TOLERANCE * scale).max(self.rounding(loading, state).min(LARGEST_ROUNDING * scale))
+        (EVENT_TOLERANCE * scale).max(self.rounding(loading, state).min(LARGEST_ROUNDING_OF_FORCE * scale))
     }
 
     /// What the rounding of displacements leaves in a force: more than [`EVENT_TOLERANCE`] of its scale where elements are
     /// so stiff that the forces of the displacements themselves are far larger than those of the path.
     pub fn rounding(self, loading: Loading<'_>, state: &State) -> f64 {
-        let of = |contact: &usize| ROUND_OFF_MULTIPLE * f64::EPSILON * loading.forces_meeting_at(*contact, state);
+        let of = |contact: &usize| loading.rounding_of_force(*contact, state);
         match self {
             Self::Normal(contact) | Self::Cone { contact, .. } => of(&contact),
             Self::Facet { corner, .. } | Self::Slide { corner } | Self::Hold { corner } | Self::Return { corner } => {

@@ -102,12 +102,3 @@ pub(crate) const SHORTEST_PART: f64 = 1.0 / 64.0;
 /// ten times the error 1e-9 that an increment may have, as the slip is a part of the way, and its direction is wrong by a
 /// part.
 pub(crate) const LAST_SLIP: f64 = 1e-8;
-
-/// Number of unit round-offs that displacements leave in the forces of stiff elements: a force sums a few products of
-/// stiffnesses and displacements, each rounded a few times. In structures with forces of one size the value stays far
-/// below [`EVENT_TOLERANCE`]; where it does not, a smaller one would take rounding for an event.
-pub(crate) const ROUND_OFF_MULTIPLE: f64 = 8.0;
-
-/// Largest rounding of a force, over its scale, up to which a negative value does not count as passed. The value is half of
-/// the violation 1e-10 that an accepted point may have: a point further beyond the law would be refused.
-pub(crate) const LARGEST_ROUNDING: f64 = 5e-11;

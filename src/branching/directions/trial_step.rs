@@ -274,7 +274,8 @@ impl Trial<'_> {
             };
             // What is below zero at the start already, within the tolerance of a point, is no fault of the direction.
             let begun = if tendency.is_some() { (first / scale).min(0.0) } else { 0.0 };
-            if last < begun - TRIAL_VIOLATION || grown < -clear {
+            let permitted = TRIAL_VIOLATION.max(event_function.zero(loading, &corrected.state, forces) / scale);
+            if last < begun - permitted || grown < -clear {
                 culprits.extend(contacts);
             }
             unclear |= grown <= clear;

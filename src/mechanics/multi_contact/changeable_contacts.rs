@@ -10,7 +10,7 @@ use crate::mechanics::multi_contact::{determinacy, planar};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_contact_forces;
 use crate::mechanics::problem::state::State;
-use crate::mechanics::problem::tolerances::CONTACT_TOLERANCE;
+use crate::mechanics::problem::tolerances::{CONTACT_TOLERANCE, LARGEST_ROUNDING_OF_FORCE};
 
 /// The status of a contact at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,17 +33,19 @@ pub enum Standing {
 }
 
 /// The distance from the friction cone of a contact that counts as zero, for a relative tolerance: relative to the
-/// friction bound `μ r_n` itself, but at least round-off, and at most relative to the forces at the node.
+/// friction bound `μ r_n` itself, but at least round-off, and at most relative to the forces at the node. An event is
+/// located within the round-off of stiff elements, too.
 pub fn none_from_cone(loading: Loading<'_>, contact: usize, state: &State, tolerance: f64, force_scale: f64) -> f64 {
     let reaction = &state.reactions[contact];
     let bound = loading.contacts[contact].friction.bound(reaction.normal).abs();
     // The forces at the node lie between the reaction and the force scale, which often decides.
     let least = reaction.size().min(force_scale);
-    if bound <= least && tolerance * bound >= CONE_ROUNDING * force_scale {
+    if bound <= least && tolerance * bound >= LARGEST_ROUNDING_OF_FORCE * force_scale {
         return tolerance * bound;
     }
     let forces = loading.force_scale_at(contact, state, force_scale);
-    (tolerance * bound.min(forces)).max(CONE_ROUNDING * forces)
+    let of_stiff_elements = loading.rounding_of_force(contact, state).min(LARGEST_ROUNDING_OF_FORCE * forces);
+    (tolerance * bound.min(forces)).max(CONE_ROUNDING * forces).max(of_stiff_elements)
 }
 
 /// The status of every contact.
@@ -110,7 +112,11 @@ fn standing(loading: Loading<'_>, state: &State, index: usize, force_scale: f64)
         return Standing::Settled(Mode::Slip { direction: [0.0; 3] });
     }
     let bound = contact.friction.bound(reaction.normal);
-    if bound - reaction.tangential_size() > none_from_cone(loading, index, state, CONTACT_TOLERANCE, force_scale) {
+    // The largest force of the path often decides.
+    let distance = bound - reaction.tangential_size();
+    if distance > CONTACT_TOLERANCE * force_scale
+        || distance > none_from_cone(loading, index, state, CONTACT_TOLERANCE, force_scale)
+    {
         return Standing::Settled(Mode::Stick);
     }
     let direction = match contact.sliding {

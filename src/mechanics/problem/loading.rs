@@ -5,7 +5,7 @@ use crate::mechanics::contact::{ContactPair, Frame, Reaction};
 use crate::mechanics::problem::contact_jacobian;
 use crate::mechanics::problem::node_contact_forces::Corner;
 use crate::mechanics::problem::state::{Rate, State};
-use crate::mechanics::problem::tolerances::USUAL_DISPLACEMENT;
+use crate::mechanics::problem::tolerances::{FORCE_ROUND_OFF_MULTIPLE, USUAL_DISPLACEMENT};
 use crate::mechanics::structure::Structure;
 use serde::{Deserialize, Serialize};
 
@@ -170,6 +170,11 @@ impl Loading<'_> {
                 + state.reactions[contact].size()
         };
         self.contacts[contact].kinematics.nodes().iter().map(at_node).fold(0.0, f64::max)
+    }
+
+    /// What the rounding of displacements leaves in a force at a contact.
+    pub fn rounding_of_force(&self, contact: usize, state: &State) -> f64 {
+        FORCE_ROUND_OFF_MULTIPLE * f64::EPSILON * self.forces_meeting_at(contact, state)
     }
 
     /// Whether a force at a contact is at most `tolerance` times the force scale against which its reaction counts as

@@ -33,3 +33,12 @@ pub(crate) const ROUND_OFF_MULTIPLE: f64 = 8.0;
 /// Largest rounding of a gap (dimensionless) that a point may have: with [`ACCEPTED_VIOLATION`] below the error 1e-9 that an
 /// increment may have.
 pub(crate) const LARGEST_ROUNDING_OF_GAP: f64 = 8e-10;
+
+/// Number of unit round-offs that displacements leave in the forces of stiff elements: a force sums a few products of
+/// stiffnesses and displacements, each rounded a few times. In structures with forces of one size the value stays far
+/// below the tolerance 1e-13 of events; where it does not, a smaller one would take rounding for an event.
+pub(crate) const FORCE_ROUND_OFF_MULTIPLE: f64 = 8.0;
+
+/// Largest rounding of a force, over its scale, up to which a negative value does not count as passed. The value is half of
+/// the violation 1e-10 that an accepted point may have: a point further beyond the law would be refused.
+pub(crate) const LARGEST_ROUNDING_OF_FORCE: f64 = 5e-11;
