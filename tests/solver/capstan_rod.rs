@@ -57,7 +57,7 @@ fn wound(length: f64, stiffness: f64) -> Vec<Increment> {
                 stage("pull", [-6.0, 0.0]),
             ],
         },
-        "analysis": {"arc_length": {"max": 5}, "record": {"elements": "none"}},
+        "analysis": {"max_increments": 5000, "arc_length": {"max": 5}, "record": {"elements": "none"}},
     }));
     let (increments, report) = trace(&request);
     assert_eq!(report.stop_reason, StopReason::StagesCompleted, "elements of {length}, stiffness {stiffness}");

@@ -5,7 +5,7 @@ use crate::mechanics::contact::{Mode, Sliding};
 use crate::mechanics::multi_contact::moving_planes::Carried;
 use crate::mechanics::multi_contact::spatial::ContactGroup;
 use crate::mechanics::multi_contact::spatial::cone_sum;
-use crate::mechanics::multi_contact::tolerances::CONE_ROUNDING;
+use crate::mechanics::multi_contact::tolerances::{CONE_ROUNDING, LARGEST_ROUNDING_OF_BOUND};
 use crate::mechanics::multi_contact::{determinacy, planar};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_contact_forces;
@@ -34,7 +34,7 @@ pub enum Standing {
 
 /// The distance from the friction cone of a contact that counts as zero, for a relative tolerance: relative to the
 /// friction bound `μ r_n` itself, but at least round-off, and at most relative to the forces at the node. An event is
-/// located within the round-off of stiff elements, too.
+/// located within the round-off of stiff elements, too, which counts as far as it is small against the bound.
 pub fn none_from_cone(loading: Loading<'_>, contact: usize, state: &State, tolerance: f64, force_scale: f64) -> f64 {
     let reaction = &state.reactions[contact];
     let bound = loading.contacts[contact].friction.bound(reaction.normal).abs();
@@ -44,7 +44,8 @@ pub fn none_from_cone(loading: Loading<'_>, contact: usize, state: &State, toler
         return tolerance * bound;
     }
     let forces = loading.force_scale_at(contact, state, force_scale);
-    let of_stiff_elements = loading.rounding_of_force(contact, state).min(LARGEST_ROUNDING_OF_FORCE * forces);
+    let most = (LARGEST_ROUNDING_OF_FORCE * forces).min(LARGEST_ROUNDING_OF_BOUND * bound);
+    let of_stiff_elements = loading.rounding_of_force(contact, state).min(most);
     (tolerance * bound.min(forces)).max(CONE_ROUNDING * forces).max(of_stiff_elements)
 }
 

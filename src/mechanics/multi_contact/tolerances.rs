@@ -6,6 +6,11 @@
 /// forces at the node.
 pub(crate) const CONE_ROUNDING: f64 = 1e-12;
 
+/// Largest rounding of stiff elements, over the friction bound, within which a traction counts as on the cone: the load of
+/// a slip is off by as much. A larger value shows in the loads of contacts with small friction, a smaller one makes a
+/// slip start beyond where its event was located.
+pub(crate) const LARGEST_ROUNDING_OF_BOUND: f64 = 1e-8;
+
 /// Sine of the angle between the normals of a node's contacts (or of a normal with the span of others) up to which the
 /// normals are dependent. The solution for reactions or positions amplifies round-off by the inverse sine, to at most
 /// 2e-10, below the error 1e-9 that an increment may have; normals closer to parallel leave the reactions or the
