@@ -272,7 +272,8 @@ impl Trial<'_> {
                 | EventFunction::Return { .. } => CLEAR_SLOPE,
                 EventFunction::LoadRate { .. } | EventFunction::SurfaceEnd(_) | EventFunction::End(_) => CLEAR_SLOPE,
             };
-            // What is below zero at the start already, within the tolerance of a point, is no fault of the direction.
+            // What is below zero at the start already, within the tolerance of a point, is no fault of the direction, nor is
+            // what rounding leaves in the forces of stiff elements.
             let begun = if tendency.is_some() { (first / scale).min(0.0) } else { 0.0 };
             let permitted = TRIAL_VIOLATION.max(event_function.zero(loading, &corrected.state, forces) / scale);
             if last < begun - permitted || grown < -clear {
