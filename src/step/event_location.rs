@@ -18,8 +18,8 @@ use crate::step::event_functions::EventFunction;
 use crate::step::interpolation::{Knot, NewtonPolynomial, PlacedPoint, between, placed, unit};
 use crate::step::mode_step::{Reached, Refused, StepStart};
 use crate::step::tolerances::{
-    EVENT_TOLERANCE, LARGEST_DEVIATION, LARGEST_SLOPE_RATIO, LOCATED_VALUE, LONGEST_STRAIGHT_STEP, OFFSET_MULTIPLE,
-    POSITION_ROUND_OFF_MULTIPLE, SLOWEST_DECREASE, SMALLEST_SEPARATION, STRAIGHT_STEP_MULTIPLE,
+    EVENT_TOLERANCE, LARGEST_DEVIATION, LARGEST_SLOPE_RATIO, LOCATED_LENGTH, LOCATED_VALUE, LONGEST_STRAIGHT_STEP,
+    OFFSET_MULTIPLE, POSITION_ROUND_OFF_MULTIPLE, SLOWEST_DECREASE, SMALLEST_SEPARATION, STRAIGHT_STEP_MULTIPLE,
 };
 
 /// Largest number of points tried.
@@ -93,6 +93,12 @@ impl Bracket {
     fn width(&self) -> f64 {
         let [first, last] = self.ends();
         last.knot.place - first.knot.place
+    }
+
+    /// Whether a value near zero belongs to a point within [`LOCATED_LENGTH`] of the zero, by the slope of the secant.
+    fn is_located(&self, value: f64) -> bool {
+        let [first, last] = self.ends();
+        value.abs() * self.width() <= LOCATED_LENGTH * (first.value - last.value)
     }
 
     /// The zero of the polynomial through the ends and the point nearest to them; `None` where the quantity is zero at
@@ -196,10 +202,11 @@ pub(crate) fn locate(
             return Err(unclear);
         }
         let best = if first.value.abs() < second.value.abs() { bracket.end - 1 } else { bracket.end };
-        if bracket.end > 1 && first.value <= zero {
+        let behind_start = bracket.end > 1;
+        if behind_start && first.value <= zero && bracket.is_located(first.value) {
             return Ok(stretch.points[bracket.end - 2].1.clone());
         }
-        let place = match bracket.estimate(zero) {
+        let place = match bracket.estimate(if behind_start { located } else { zero }) {
             Some(_) if halve => first.knot.place + 0.5 * bracket.width(),
             Some(place) => place,
             None => {
@@ -228,11 +235,12 @@ pub(crate) fn locate(
         {
             return Ok(exact);
         }
-        if nearest <= zero {
+        let decreases = value.abs() <= SLOWEST_DECREASE * nearest;
+        if nearest <= zero && !decreases {
             // The remainder is round-off.
             return Ok(if value.abs() < nearest { found } else { stretch.points[best.max(1) - 1].1.clone() });
         }
-        halve = value.abs() > SLOWEST_DECREASE * nearest;
+        halve = !decreases;
         nearest = nearest.min(value.abs());
     }
     Err(unclear)
@@ -283,7 +291,7 @@ fn by_series(
     let rate = unit(&rate);
     let value = event_function.value(start.loading, start.modes, &state, &rate).abs();
     let mut corrected = newton::judged(&system, state, start.force_scale);
-    if value > zero || corrected.residual > ACCEPTED_RESIDUAL {
+    if value > zero || !bracket.is_located(value) || corrected.residual > ACCEPTED_RESIDUAL {
         return None;
     }
     corrected.modes.clone_from(&found.corrected.modes);

@@ -5,6 +5,12 @@
 /// longer decreases is round-off, and the location ends there.
 pub(crate) const LOCATED_VALUE: f64 = 1e-16;
 
+/// Arc length (dimensionless) within which a point counts as the zero of a quantity whose value there is round-off. The
+/// gap of a node of a finely divided beam changes by 1e-7 over a unit of arc length: a value of 1e-14 is then as far
+/// from the zero as 1e-7, over which reactions change by as much. The length keeps such changes below the tolerance
+/// 1e-10 on reactions that are zero.
+pub(crate) const LOCATED_LENGTH: f64 = 1e-11;
+
 /// Ratio to the nearest earlier value above which a value has decreased too slowly: the bracket is then halved.
 /// Interpolation near a simple zero reduces the value far more than four times, and halving the bracket reduces the
 /// value by about a factor of two; the ratio affects effort only.

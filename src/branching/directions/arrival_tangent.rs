@@ -16,7 +16,7 @@
 
 use crate::branching::directions::candidate::CandidateDirection;
 use crate::branching::directions::feasible_direction::DirectionChoice;
-use crate::branching::directions::tolerances::{COSINE_TOLERANCE, RESTING_SPEED};
+use crate::branching::directions::tolerances::{COSINE_TOLERANCE, LEAST_MOTION, LEAST_RESTING_PART, RESTING_SPEED};
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::dot;
 use crate::mechanics::problem::loading::Loading;
@@ -47,11 +47,14 @@ impl<'a> Incoming<'a> {
     /// Whether in a direction contacts that have come to rest stick, while all others keep their modes.
     pub(crate) fn is_stopped_in(&self, loading: Loading<'_>, state: &State, choice: &DirectionChoice) -> bool {
         let Some(modes) = self.modes else { return false };
+        // Where most of the arc length is load, all speeds are small.
+        let moved = self.rate.displacement.iter().map(|velocity| velocity * velocity).sum::<f64>().sqrt();
+        let resting = RESTING_SPEED * (moved / LEAST_MOTION).clamp(LEAST_RESTING_PART, 1.0);
         let mut stops = false;
         let as_it_was = |(contact, (was, is)): (usize, (&Mode, &Mode))| match (was, is) {
             (Mode::Slip { direction }, Mode::Stick) => {
                 stops = true;
-                dot(direction, &loading.relative_rate(contact, state, self.rate)).abs() <= RESTING_SPEED
+                dot(direction, &loading.relative_rate(contact, state, self.rate)).abs() <= resting
             }
             _ => was.continues(*is),
         };

@@ -68,7 +68,7 @@ impl<'a> Condensed<'a> {
             let reaction = &columns[column].reactions[row / 4];
             if row % 4 == 0 { reaction.normal } else { reaction.tangential[row % 4 - 1] }
         });
-        let problem = RateProblem {
+        let mut problem = RateProblem {
             forms: column_by_column(forms.rows.len(), columns.len(), |row, column| forms.rows[row][column]),
             is_force: forms.is_force,
             entities,
@@ -77,6 +77,7 @@ impl<'a> Condensed<'a> {
             motion: basis.motion(),
             reactions,
         };
+        problem.balance();
         let held = forms.held;
         Some(Self { loading, basis, changeable, problem, outcomes, _held: held })
     }
@@ -102,6 +103,7 @@ impl<'a> Condensed<'a> {
                 first.extend(combinations_near_vector::near(&self.problem, &self.weights_of(state, rate)));
             }
             if self.changeable.len() > FEW {
+                first.extend(self.released(incoming));
                 first.extend(gauss_seidel::sweeps(&self.problem, effort.cancel));
             }
             first
@@ -155,6 +157,24 @@ impl<'a> Condensed<'a> {
                 .collect();
             self.add(&slip.ray, &directions, held, state, found);
         }
+    }
+
+    /// The combinations in which all contacts are free that may be, and those whose force the incoming direction leaves
+    /// at zero. A stretch of a structure may come to lie flat on an obstacle without force: its contacts are free on both
+    /// sides of this point, and what the search computes of so many is round-off.
+    fn released(&self, incoming: Option<&Rate>) -> Vec<Vec<usize>> {
+        let freed = |is_freed: &dyn Fn(usize) -> bool| {
+            let option = |outcomes: &Vec<OptionOutcome>| {
+                let is_free = |(contact, mode): &(usize, Mode)| *mode == Mode::Free && is_freed(*contact);
+                outcomes.iter().position(|outcome| outcome.modes.iter().all(is_free)).unwrap_or(0)
+            };
+            self.outcomes.iter().map(option).collect()
+        };
+        let mut combinations = vec![freed(&|_| true)];
+        if let Some(rate) = incoming {
+            combinations.push(freed(&|contact| rate.reactions[contact] == Reaction::default()));
+        }
+        combinations
     }
 
     /// Adds slips of an unloaded node out of a corner, which begin along one of its obstacles in an unknown direction.

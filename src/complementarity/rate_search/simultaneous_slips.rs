@@ -21,8 +21,8 @@ use crate::complementarity::rate_search::friction_newton::{Behaviour, FrictionEq
 use crate::complementarity::rate_search::slip_onset_direction::{SECTORS, Touch, Turning};
 use crate::complementarity::rate_search::tolerances::{COEFFICIENT_ROUND_OFF, RATE_TOLERANCE, SETTLED_CHANGE};
 use crate::complementarity::rates::cartesian_product::{combinations, count};
-use crate::complementarity::rates::gauss_seidel::{Local, own_column, rising};
-use crate::complementarity::rates::rate_problem::{RateProblem, Signed};
+use crate::complementarity::rates::gauss_seidel::{Local, rising};
+use crate::complementarity::rates::rate_problem::{RateProblem, Signed, own_column};
 use crate::complementarity::rates::ray_of_combination;
 use crate::resources::budget;
 use crate::resources::cancel::CancelFlag;
@@ -368,9 +368,9 @@ impl<'a> SlipEquations<'a> {
         weak |= self.others.iter().any(|(entity, _)| {
             let bounds = &self.problem.entities[*entity].options[chosen[*entity]].nonnegative;
             let value = |signed: &Signed| signed.sign * self.problem.forms.row(signed.form).transpose().dot(&weights);
-            bounds
-                .iter()
-                .any(|signed| value(signed) <= if self.problem.is_force[signed.form] { force } else { RATE_TOLERANCE })
+            let is_force = &self.problem.is_force;
+            let tolerance = |form: usize| if is_force[form] { force } else { along.velocity_tolerance(form) };
+            bounds.iter().any(|signed| value(signed) <= tolerance(signed.form))
         });
         Some(Turning { ray: Ray { weights, fitting, in_doubt, weak }, slips })
     }

@@ -73,7 +73,11 @@ pub(crate) fn examine(search: &mut BranchAndBound<'_>, chosen: &[usize]) -> Exam
 
 fn keep(search: &mut BranchAndBound<'_>, chosen: &[usize], weights: DVector<f64>, along: &Along<'_>) {
     let size = weights.amax();
-    if !search.findings.rays.iter().any(|ray| (&ray.weights - &weights).amax() <= RAY_DISTANCE * size) {
+    let is_same = |ray: &Ray| {
+        (&ray.weights - &weights).amax() <= RAY_DISTANCE * size
+            && ray_of_combination::forms_along(search.problem, &ray.weights).has_forces_of(along)
+    };
+    if !search.findings.rays.iter().any(is_same) {
         let fitting = along.fitting(chosen);
         let weak = along.is_weak(&fitting);
         // Two lists for each entity.

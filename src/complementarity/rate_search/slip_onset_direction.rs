@@ -16,8 +16,7 @@
 use crate::algebra::scalar_root::find_root;
 use crate::complementarity::rate_search::branch_and_bound::{Effort, Findings, Ray, explore};
 use crate::complementarity::rate_search::tolerances::{MISFIT_TOLERANCE, SMALLEST_RAY_COSINE};
-use crate::complementarity::rates::gauss_seidel::own_column;
-use crate::complementarity::rates::rate_problem::{Choice, Entity, RateProblem};
+use crate::complementarity::rates::rate_problem::{Choice, Entity, RateProblem, own_column};
 use crate::resources::budget;
 use nalgebra::DVector;
 use std::f64::consts::TAU;

@@ -7,7 +7,7 @@
 //! therefore over-relaxed (C. W. Cryer, SIAM J. Control 9 (1971) 385, doi:10.1137/0309028), and plain where
 //! over-relaxation does not settle.
 
-use crate::complementarity::rates::rate_problem::{Entity, RateProblem, Touching};
+use crate::complementarity::rates::rate_problem::{Entity, RateProblem, Touching, own_column};
 use crate::complementarity::rates::ray_of_combination;
 use crate::complementarity::rates::tolerances::{DIVERGENT_GROWTH, RELATIVE_ROUND_OFF, SETTLED_CHANGE};
 use crate::resources::budget;
@@ -120,17 +120,6 @@ impl Local {
                 })
             }
         }
-    }
-}
-
-/// The weight equal to a velocity form; `None` where there is no such weight.
-pub fn own_column(problem: &RateProblem, form: usize) -> Option<usize> {
-    let row = problem.forms.row(form);
-    // The coefficient is 1 up to the rounding of a frame that is not aligned with the axes.
-    let mut filled = (0..row.len()).filter(|column| row[*column].abs() > RELATIVE_ROUND_OFF);
-    match (filled.next(), filled.next()) {
-        (Some(column), None) if (row[column] - 1.0).abs() < RELATIVE_ROUND_OFF => Some(column),
-        _ => None,
     }
 }
 

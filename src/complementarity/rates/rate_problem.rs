@@ -1,5 +1,6 @@
 //! Data of a rate problem.
 
+use crate::complementarity::rates::tolerances::{RELATIVE_ROUND_OFF, SMALL_VELOCITY, SMALLEST_UNIT_OF_VELOCITY};
 use crate::resources::budget;
 use nalgebra::{DMatrix, DVector, RowDVector};
 use std::fmt::Debug;
@@ -70,6 +71,18 @@ impl MotionOfWeights for DMatrix<f64> {
     }
 }
 
+/// A velocity that is a weight of its own, and the force that resists it.
+struct Resisted {
+    velocity: usize,
+    weight: usize,
+    force: usize,
+}
+
+/// What a velocity is compared with, where `natural` is the velocity that changes its force as much as forces change.
+pub(crate) fn unit_of_velocity(natural: f64) -> f64 {
+    (natural / SMALL_VELOCITY).min(1.0).max(SMALLEST_UNIT_OF_VELOCITY)
+}
+
 /// A rate problem: forms over the weights, and the entities.
 #[derive(Debug, Clone)]
 pub struct RateProblem {
@@ -92,6 +105,41 @@ impl RateProblem {
     /// Number of weights.
     pub fn weights(&self) -> usize {
         self.forms.ncols()
+    }
+
+    /// The stiff contacts: the form of each velocity that is a weight of its own, this weight, and the form of the force
+    /// that resists the velocity.
+    fn resisted(&self) -> impl Iterator<Item = Resisted> {
+        let pairs = self.entities.iter().filter_map(Entity::conjugates).flatten();
+        pairs.filter_map(|[force, velocity]| {
+            let is_resisted = self.is_force[force.form] && !self.is_force[velocity.form];
+            let weight = own_column(self, velocity.form).filter(|_| is_resisted)?;
+            Some(Resisted { velocity: velocity.form, weight, force: force.form })
+        })
+    }
+
+    /// What the velocity of each form is compared with, where rates of force are at most `largest`: unit arc length, or
+    /// a part of it where a far smaller velocity changes its force by as much.
+    pub(crate) fn units_of_velocity(&self, largest: f64) -> Vec<f64> {
+        let mut units = vec![1.0; self.forms.nrows()];
+        for one in self.resisted() {
+            units[one.velocity] = unit_of_velocity(largest / self.forms[(one.force, one.weight)].abs());
+        }
+        units
+    }
+
+    /// Makes the motion of the last weight, which moves no contact, comparable with those of contacts that resist far
+    /// smaller velocities.
+    pub(crate) fn balance(&mut self) {
+        let last = self.weights() - 1;
+        let comparable = self.resisted().map(|one| {
+            let [own, other] = [last, one.weight].map(|weight| self.forms[(one.force, weight)].abs());
+            own * self.sizes[one.weight] / other
+        });
+        let largest = comparable.fold(0.0, f64::max);
+        if largest > 0.0 {
+            self.sizes[last] *= unit_of_velocity(largest / self.sizes[last]);
+        }
     }
 
     /// The strength of coupling between entities: products of the magnitudes of their forms' coefficients, with forms
@@ -124,6 +172,17 @@ impl RateProblem {
     /// Number of combinations of options, saturating.
     pub fn combinations(&self) -> u64 {
         self.entities.iter().fold(1, |total: u64, entity| total.saturating_mul(entity.options.len() as u64))
+    }
+}
+
+/// The weight equal to a velocity form; `None` where there is no such weight.
+pub fn own_column(problem: &RateProblem, form: usize) -> Option<usize> {
+    let row = problem.forms.row(form);
+    // The coefficient is 1 up to the rounding of a frame that is not aligned with the axes.
+    let mut filled = (0..row.len()).filter(|column| row[*column].abs() > RELATIVE_ROUND_OFF);
+    match (filled.next(), filled.next()) {
+        (Some(column), None) if (row[column] - 1.0).abs() < RELATIVE_ROUND_OFF => Some(column),
+        _ => None,
     }
 }
 

@@ -2,7 +2,9 @@
 
 use crate::algebra::null_space;
 use crate::complementarity::rates::rate_problem::{Choice, Entity, RateProblem};
-use crate::complementarity::rates::tolerances::{DOUBTFUL_RATE, RANK_TOLERANCE, RATE_TOLERANCE, SUM_ROUND_OFF};
+use crate::complementarity::rates::tolerances::{
+    DOUBTFUL_RATE, RANK_TOLERANCE, RATE_TOLERANCE, RAY_FORCES, SUM_ROUND_OFF,
+};
 use crate::resources::budget;
 use nalgebra::{DMatrix, DVector};
 
@@ -123,7 +125,9 @@ pub(crate) fn edges(problem: &RateProblem, chosen: &[usize], basis: &DMatrix<f64
 /// The values of the forms along a vector of weights of unit arc length.
 pub(crate) fn forms_along<'a>(problem: &'a RateProblem, weights: &DVector<f64>) -> Along<'a> {
     budget::spend((problem.forms.nrows() + 2 * problem.reactions.nrows()) * problem.weights());
-    Along { problem, values: &problem.forms * weights, forces: forces(problem, weights) }
+    let forces = forces(problem, weights);
+    let units_of_velocity = problem.units_of_velocity(forces.largest);
+    Along { problem, values: &problem.forms * weights, forces, units_of_velocity }
 }
 
 /// The forms and forces along a vector of weights of unit arc length.
@@ -132,6 +136,8 @@ pub(crate) struct Along<'a> {
     /// Value of each form.
     values: DVector<f64>,
     forces: Forces,
+    /// What the velocity of each form is compared with.
+    units_of_velocity: Vec<f64>,
 }
 
 impl Along<'_> {
@@ -144,6 +150,19 @@ impl Along<'_> {
     /// The tolerance below which rates of force count as zero.
     pub fn force_tolerance(&self) -> f64 {
         (RATE_TOLERANCE * self.forces.largest).max(self.forces.rounding)
+    }
+
+    /// Whether two rays change the same forces.
+    pub fn has_forces_of(&self, other: &Self) -> bool {
+        let least = RAY_FORCES * self.forces.largest.max(other.forces.largest);
+        let is_force = self.problem.is_force.iter();
+        let mut values = self.values.iter().zip(other.values.iter()).zip(is_force);
+        values.all(|((one, other), is_force)| !is_force || (one - other).abs() <= least)
+    }
+
+    /// The tolerance below which the velocity of a form counts as zero.
+    pub fn velocity_tolerance(&self, form: usize) -> f64 {
+        RATE_TOLERANCE * self.units_of_velocity[form]
     }
 
     /// The options of each entity under which a ray, found under the chosen options, is feasible. As each option
@@ -161,7 +180,8 @@ impl Along<'_> {
         let (values, is_force) = (&self.values, &self.problem.is_force);
         let fits = |entity: &Entity, choice: &Choice| {
             let force = self.forces.tolerance(entity, values, tolerance);
-            let tolerance = |form: usize| if is_force[form] { force } else { tolerance };
+            let velocity = |form: usize| tolerance * self.units_of_velocity[form];
+            let tolerance = |form: usize| if is_force[form] { force } else { velocity(form) };
             choice.zero.iter().all(|&form| values[form].abs() <= tolerance(form))
                 && choice.nonnegative.iter().all(|signed| signed.sign * values[signed.form] >= -tolerance(signed.form))
         };
@@ -192,8 +212,9 @@ impl Along<'_> {
         let entity = &self.problem.entities[entity];
         let force = self.forces.tolerance(entity, &self.values, RATE_TOLERANCE);
         entity.options[choice].nonnegative.iter().any(|signed| {
-            let tolerance = if self.problem.is_force[signed.form] { force } else { RATE_TOLERANCE };
-            is_so(signed.sign * self.values[signed.form], tolerance)
+            let form = signed.form;
+            let tolerance = if self.problem.is_force[form] { force } else { self.velocity_tolerance(form) };
+            is_so(signed.sign * self.values[form], tolerance)
         })
     }
 }

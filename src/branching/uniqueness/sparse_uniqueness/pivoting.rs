@@ -8,6 +8,7 @@ use crate::branching::directions::tolerances::WEAK_MARGIN;
 use crate::branching::uniqueness::sparse_uniqueness::proof::DistinguishingQuantity;
 use crate::branching::uniqueness::sparse_uniqueness::sparse_rate_equations::{ChangingContact, Equations};
 use crate::complementarity::rates::block_pivoting::{self, RoundResult, Rounds};
+use crate::complementarity::rates::rate_problem::unit_of_velocity;
 use crate::complementarity::rates::tolerances::DOUBTFUL_RATE;
 use crate::mechanics::contact::vector::{Vector, dot, scaled};
 use crate::mechanics::contact::{Mode, Reaction, all_continue};
@@ -181,10 +182,10 @@ fn line(
 /// The contacts with a negative quantity among those that must not be, in their order, with the modes to try next; and
 /// the contacts at which the quantity is zero, exactly or nearly.
 fn violations(equations: &Equations<'_>, modes: &[Mode], rate: &Rate) -> (Vec<(usize, Mode)>, Vec<Doubt>) {
-    let force = WEAK_MARGIN * rate.largest_reaction().max(f64::MIN_POSITIVE);
+    let largest = rate.largest_reaction().max(f64::MIN_POSITIVE);
     let (mut changes, mut doubts) = (Vec::new(), Vec::new());
     for one in &equations.changing {
-        let (margin, tolerance, other) = margin(equations, one, modes[one.contact], rate, force);
+        let (margin, tolerance, other) = margin(equations, one, modes[one.contact], rate, largest);
         if margin < -tolerance {
             changes.push((one.contact, other));
         } else if margin <= DOUBTFUL_RATE / WEAK_MARGIN * tolerance {
@@ -202,19 +203,24 @@ fn speed(equations: &Equations<'_>, one: &ChangingContact, direction: &Vector, r
 /// For each contact that can change, whether the nonnegative quantity of its mode is positive beyond round-off.
 pub(super) fn strict(equations: &Equations<'_>, candidate: &CandidateDirection) -> Vec<bool> {
     let rate = &candidate.rate;
-    let force = WEAK_MARGIN * rate.largest_reaction().max(f64::MIN_POSITIVE);
+    let largest = rate.largest_reaction().max(f64::MIN_POSITIVE);
     let is_strict = |one: &ChangingContact| {
-        let (margin, tolerance, _) = margin(equations, one, candidate.modes[one.contact], rate, force);
+        let (margin, tolerance, _) = margin(equations, one, candidate.modes[one.contact], rate, largest);
         margin > tolerance
     };
     equations.changing.iter().map(is_strict).collect()
 }
 
-/// The smallest of the nonnegative quantities of a mode, its round-off (`force` for forces), and the mode to try where
-/// it is negative.
-fn margin(equations: &Equations<'_>, one: &ChangingContact, mode: Mode, rate: &Rate, force: f64) -> (f64, f64, Mode) {
+/// The smallest of the nonnegative quantities of a mode, its round-off where rates of force are at most `largest`, and the
+/// mode to try where it is negative.
+fn margin(equations: &Equations<'_>, one: &ChangingContact, mode: Mode, rate: &Rate, largest: f64) -> (f64, f64, Mode) {
     let (reaction, data) = (&rate.reactions[one.contact], &equations.loading.contacts[one.contact]);
-    let tolerance = if matches!(mode, Mode::Stick) || data.tangents() == 0 { force } else { WEAK_MARGIN };
+    let tolerance = if matches!(mode, Mode::Stick) || data.tangents() == 0 && mode != Mode::Free {
+        WEAK_MARGIN * largest
+    } else {
+        let column = one.column + usize::from(one.direction.is_none() && mode == Mode::Free);
+        WEAK_MARGIN * unit_of_velocity(largest / equations.stiffness(column))
+    };
     let (margin, other) = match (mode, one.direction) {
         (Mode::Stick, Some(direction)) => {
             let left = data.friction.slack(reaction, &direction);

@@ -7,6 +7,7 @@ use crate::mechanics::multi_contact::changeable_contacts::Standing;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use smallvec::SmallVec;
+use std::cell::OnceCell;
 
 /// A contact that can change.
 pub(super) struct ChangingContact {
@@ -43,6 +44,7 @@ pub(super) struct Equations<'a> {
     pub size: usize,
     /// Diagonal entries of `A` due to the rotation of reactions with the motion.
     turning: Vec<(usize, f64)>,
+    diagonal: OnceCell<Vec<f64>>,
 }
 
 impl<'a> Equations<'a> {
@@ -63,6 +65,7 @@ impl<'a> Equations<'a> {
             parts: vec![SmallVec::new(); structure.freedoms()],
             size: 0,
             turning: Vec::new(),
+            diagonal: OnceCell::new(),
         };
         let mut is_closed = vec![false; structure.freedoms()];
         for (contact, (standing, data)) in standings.iter().zip(loading.contacts).enumerate() {
@@ -139,6 +142,20 @@ impl<'a> Equations<'a> {
             }
         });
         self.turning.iter().for_each(|(column, value)| each(*column, *column, *value));
+    }
+
+    /// The stiffness of a column by itself: its diagonal entry in `A`.
+    pub fn stiffness(&self, column: usize) -> f64 {
+        let sum = || {
+            let mut diagonal = vec![0.0; self.size];
+            self.each_entry(&mut |row, column, value| {
+                if row == column {
+                    diagonal[row] += value;
+                }
+            });
+            diagonal
+        };
+        self.diagonal.get_or_init(sum)[column].abs()
     }
 
     /// The lower triangle of `(A + Aᵀ)/2`.
