@@ -190,3 +190,62 @@ fn a_ring_of_a_thousand_elements_rolls_on_a_rough_floor() {
     close(loads[0] / smooth, 1.0, 2e-6, "the load on a rough floor");
     close(loads[1] / loads[0], 1.0, 1e-9, "the load on a rougher floor");
 }
+
+/// The load that lowers the top of a ring by a tenth of its perimeter. A third of the ring is drawn flat and lies on a
+/// floor: so many contacts touch without force, of which the two at the ends of the flat stretch are pressed.
+fn load_of_flat_ring(count: usize, friction: f64) -> f64 {
+    let flat = count / 3;
+    // The arc of length 2 over a chord of length 1: half the angle of the rest of its circle.
+    let (mut low, mut high) = (0.1_f64, 3.0_f64);
+    for _ in 0..100 {
+        let half = 0.5 * (low + high);
+        if (std::f64::consts::PI - half) / half.sin() > 2.0 { low = half } else { high = half }
+    }
+    let radius = 0.5 / low.sin();
+    let place = |k: usize| {
+        if k <= flat {
+            return [k as f64 / flat as f64 - 0.5, 0.0];
+        }
+        let part = (k - flat) as f64 / (count - flat) as f64;
+        let angle = low - 0.5 * std::f64::consts::PI + 2.0 * (std::f64::consts::PI - low) * part;
+        [radius * angle.cos(), radius * (low.cos() + angle.sin())]
+    };
+    let name = |k: usize| format!("n{}", k % count);
+    let top = name((0..count).max_by(|a, b| place(*a)[1].total_cmp(&place(*b)[1])).expect("nodes"));
+    let nodes: serde_json::Map<String, Value> = (0..count).map(|k| (name(k), json!(place(k)))).collect();
+    let beam = |k: usize| json!({"kind": "beam", "nodes": [name(k), name(k + 1)], "axial_stiffness": 1e4, "bending_stiffness": 1.0});
+    let contact = |k: usize| json!({"node": name(k), "obstacle": "floor", "friction": friction});
+    let until = json!({"displacement": {"node": top, "component": "y", "below": -0.3}});
+    let request = typed(json!({
+        "model": {
+            "dimension": 2, "nodes": nodes, "elements": (0..count).map(beam).collect::<Vec<_>>(),
+            "supports": {&top: ["x", "rz"]},
+            "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}},
+            "contacts": (0..count).filter(|k| place(*k)[1] < 0.3).map(contact).collect::<Vec<_>>(),
+            "stages": [{"name": "press", "forces": {&top: [0, -1]}, "until": until}],
+        },
+        "analysis": {"record": {"nodes": [&top], "elements": "none"}},
+    }));
+    let (increments, report) = trace(&request);
+    assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{count} elements, friction {friction}");
+    last(&increments).load_factor
+}
+
+#[test]
+fn a_ring_of_which_a_third_lies_on_a_floor_is_pressed() {
+    for friction in [0.0, 0.3] {
+        let loads = [75, 150, 300].map(|count| load_of_flat_ring(count, friction));
+        println!("friction {friction}: {loads:.6?}");
+        close(loads[2] / loads[1], 1.0, 2e-3, "the load of a finer ring");
+    }
+}
+
+#[test]
+#[ignore = "a minute in a release build: cargo test --release --test solver frame_extremes -- --ignored"]
+fn a_ring_of_a_thousand_elements_of_which_a_third_lies_on_a_floor_is_pressed() {
+    for friction in [0.0, 0.3] {
+        let loads = [300, 1_000].map(|count| load_of_flat_ring(count, friction));
+        println!("friction {friction}: {loads:.6?}");
+        close(loads[1] / loads[0], 1.0, 2e-4, "the load of a finer ring");
+    }
+}

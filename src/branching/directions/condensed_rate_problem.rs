@@ -103,7 +103,7 @@ impl<'a> Condensed<'a> {
                 first.extend(combinations_near_vector::near(&self.problem, &self.weights_of(state, rate)));
             }
             if self.changeable.len() > FEW {
-                first.extend(self.released(incoming));
+                first.extend(incoming.map(|rate| self.released(rate)).unwrap_or_default());
                 first.extend(gauss_seidel::sweeps(&self.problem, effort.cancel));
             }
             first
@@ -162,7 +162,7 @@ impl<'a> Condensed<'a> {
     /// The combinations in which all contacts are free that may be, and those whose force the incoming direction leaves
     /// at zero. A stretch of a structure may come to lie flat on an obstacle without force: its contacts are free on both
     /// sides of this point, and what the search computes of so many is round-off.
-    fn released(&self, incoming: Option<&Rate>) -> Vec<Vec<usize>> {
+    fn released(&self, incoming: &Rate) -> Vec<Vec<usize>> {
         let freed = |is_freed: &dyn Fn(usize) -> bool| {
             let option = |outcomes: &Vec<OptionOutcome>| {
                 let is_free = |(contact, mode): &(usize, Mode)| *mode == Mode::Free && is_freed(*contact);
@@ -170,11 +170,7 @@ impl<'a> Condensed<'a> {
             };
             self.outcomes.iter().map(option).collect()
         };
-        let mut combinations = vec![freed(&|_| true)];
-        if let Some(rate) = incoming {
-            combinations.push(freed(&|contact| rate.reactions[contact] == Reaction::default()));
-        }
-        combinations
+        vec![freed(&|_| true), freed(&|contact| incoming.reactions[contact] == Reaction::default())]
     }
 
     /// Adds slips of an unloaded node out of a corner, which begin along one of its obstacles in an unknown direction.
