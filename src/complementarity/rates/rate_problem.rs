@@ -80,7 +80,8 @@ struct Resisted {
 
 /// What a velocity is compared with, where `natural` is the velocity that changes its force as much as forces change.
 pub(crate) fn unit_of_velocity(natural: f64) -> f64 {
-    (natural / SMALL_VELOCITY).min(1.0).max(SMALLEST_UNIT_OF_VELOCITY)
+    // Where neither forces nor their coefficients are, the quotient is none.
+    if natural.is_nan() { 1.0 } else { (natural / SMALL_VELOCITY).clamp(SMALLEST_UNIT_OF_VELOCITY, 1.0) }
 }
 
 /// A rate problem: forms over the weights, and the entities.
