@@ -13,8 +13,8 @@
 //! Pang, R. E. Stone, *The Linear Complementarity Problem*, 1992, sections 4.4 and 4.9). Different covering vectors may
 //! lead to different solutions. Each solution gives a combination, which is examined exactly like any other.
 //!
-//! Before that, the problem without friction tells which contacts are pressed: of `0 <= ṙ_n ⊥ ġ >= 0` with `ṙ_t = 0`,
-//! hundreds of contacts that touch without force leave few that stick or slip.
+//! The problem without friction tells which contacts are pressed: of `0 <= ṙ_n ⊥ ġ >= 0` with `ṙ_t = 0`, hundreds of
+//! contacts that touch without force leave few that stick or slip, whose combinations are guesses to examine.
 
 use crate::complementarity::rates::cartesian_product::combinations;
 use crate::complementarity::rates::gauss_seidel::{Local, rising};
@@ -52,12 +52,7 @@ pub fn lemke(problem: &RateProblem, cancel: &CancelFlag) -> Vec<Vec<usize>> {
     let (matrix, load) = coefficients(problem, &pairs);
     let mut left = WORK;
     let mut found = Vec::new();
-    for sign in [1.0, -1.0] {
-        if !cancel.is_cancelled() {
-            found.extend(pressed_without_friction(problem, &locals, sign * rising, &mut left));
-        }
-    }
-    let mut known: BTreeSet<Vec<usize>> = found.iter().cloned().collect();
+    let mut known = BTreeSet::new();
     for sign in [1.0, -1.0] {
         let constant: Vec<f64> = load.iter().map(|value| value * sign * rising).collect();
         for cover in covers(&constant) {
@@ -74,8 +69,21 @@ pub fn lemke(problem: &RateProblem, cancel: &CancelFlag) -> Vec<Vec<usize>> {
     found
 }
 
-/// The combinations in which the contacts stick or slip that are pressed where there is no friction, for a load rate; none
-/// where they are many, or all contacts are pressed.
+/// Guesses: the combinations in which the contacts stick or slip that are pressed where there is no friction.
+pub fn pressed(problem: &RateProblem, cancel: &CancelFlag) -> Vec<Vec<usize>> {
+    let locals: Option<Vec<Local>> = problem.entities.iter().map(|entity| Local::of(problem, entity)).collect();
+    let (Some(locals), Some(rising)) = (locals, rising(problem)) else { return Vec::new() };
+    let mut left = WORK;
+    let mut guesses = Vec::new();
+    for sign in [1.0, -1.0] {
+        if !cancel.is_cancelled() {
+            guesses.extend(pressed_without_friction(problem, &locals, sign * rising, &mut left));
+        }
+    }
+    guesses
+}
+
+/// The guesses for a load rate; none where many contacts are pressed, or all.
 fn pressed_without_friction(problem: &RateProblem, locals: &[Local], load: f64, left: &mut usize) -> Vec<Vec<usize>> {
     let normals: Vec<(usize, usize)> = locals
         .iter()
