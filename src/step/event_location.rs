@@ -203,7 +203,8 @@ pub(crate) fn locate(
         }
         let best = if first.value.abs() < second.value.abs() { bracket.end - 1 } else { bracket.end };
         let behind_start = bracket.end > 1;
-        if behind_start && first.value <= zero && bracket.is_located(first.value) {
+        let is_located = first.value <= located || bracket.is_located(first.value);
+        if behind_start && first.value <= zero && is_located {
             return Ok(stretch.points[bracket.end - 2].1.clone());
         }
         let place = match bracket.estimate(if behind_start { located } else { zero }) {

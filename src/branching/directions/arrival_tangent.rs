@@ -16,7 +16,8 @@
 
 use crate::branching::directions::candidate::CandidateDirection;
 use crate::branching::directions::feasible_direction::DirectionChoice;
-use crate::branching::directions::tolerances::{COSINE_TOLERANCE, LEAST_MOTION, LEAST_RESTING_PART, RESTING_SPEED};
+use crate::branching::directions::tolerances::{COSINE_TOLERANCE, RESTING_SPEED};
+use crate::complementarity::rates::rate_problem::velocity_scale;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::dot;
 use crate::mechanics::problem::loading::Loading;
@@ -47,9 +48,9 @@ impl<'a> Incoming<'a> {
     /// Whether in a direction contacts that have come to rest stick, while all others keep their modes.
     pub(crate) fn is_stopped_in(&self, loading: Loading<'_>, state: &State, choice: &DirectionChoice) -> bool {
         let Some(modes) = self.modes else { return false };
-        // Where most of the arc length is load, all speeds are small.
+        // Where the arc length is nearly all load, the slips are as slow as the rest.
         let moved = self.rate.displacement.iter().map(|velocity| velocity * velocity).sum::<f64>().sqrt();
-        let resting = RESTING_SPEED * (moved / LEAST_MOTION).clamp(LEAST_RESTING_PART, 1.0);
+        let resting = RESTING_SPEED * velocity_scale(moved);
         let mut stops = false;
         let as_it_was = |(contact, (was, is)): (usize, (&Mode, &Mode))| match (was, is) {
             (Mode::Slip { direction }, Mode::Stick) => {

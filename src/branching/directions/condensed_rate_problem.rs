@@ -77,7 +77,7 @@ impl<'a> Condensed<'a> {
             motion: basis.motion(),
             reactions,
         };
-        problem.balance();
+        problem.rescale_last_weight();
         let held = forms.held;
         Some(Self { loading, basis, changeable, problem, outcomes, _held: held })
     }

@@ -10,13 +10,6 @@ pub(crate) const COSINE_TOLERANCE: f64 = 1e-9;
 /// speed there.
 pub(crate) const RESTING_SPEED: f64 = 1e-9;
 
-/// Displacement rate of unit arc length below which speeds count as resting in proportion: a structure that has become
-/// stiffer than it began moves little while the load rises, and its slips are as slow.
-pub(crate) const LEAST_MOTION: f64 = 1e-2;
-
-/// Smallest part of the resting speed that counts as such: 1e-13, to which the end of a slip is located.
-pub(crate) const LEAST_RESTING_PART: f64 = 1e-4;
-
 /// Margin of an inequality (of rates of unit arc length; forces relative to the largest) up to which the inequality is
 /// weak, and a trial step decides. The value is the error 1e-9 that an increment may have, far above the round-off of
 /// rates; a larger margin only costs more trial steps, and a smaller one would take rounding for a sign.

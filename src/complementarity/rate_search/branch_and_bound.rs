@@ -10,7 +10,8 @@
 use crate::complementarity::rate_search::certified_rays;
 use crate::complementarity::rate_search::single_combination;
 use crate::complementarity::rate_search::tolerances::SEARCH_TOLERANCE;
-use crate::complementarity::rates::lemke;
+use crate::complementarity::rates::lemke::lemke;
+use crate::complementarity::rates::pressed_contacts;
 use crate::complementarity::rates::rate_problem::{Choice, Entity, RateProblem, Signed};
 use crate::complementarity::rates::simplex_dictionary::simplex;
 use crate::complementarity::rates::simplex_dictionary::{Dictionary, Feasibility};
@@ -88,8 +89,8 @@ const MOST_IN_SETS: u64 = 512;
 /// certificate.
 pub fn explore(problem: &RateProblem, first: impl FnOnce() -> Vec<Vec<usize>>, effort: Effort<'_>) -> Findings {
     explore_by(problem, first, effort, |problem, cancel| {
-        let mut further = lemke::pressed(problem, cancel);
-        further.extend(lemke::lemke(problem, cancel));
+        let mut further = pressed_contacts::guesses(problem, cancel);
+        further.extend(lemke(problem, cancel));
         further
     })
 }

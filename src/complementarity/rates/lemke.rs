@@ -12,11 +12,7 @@
 //! secondary ray: no solution found). Ties are broken lexicographically, so that no basis repeats (R. W. Cottle, J.-S.
 //! Pang, R. E. Stone, *The Linear Complementarity Problem*, 1992, sections 4.4 and 4.9). Different covering vectors may
 //! lead to different solutions. Each solution gives a combination, which is examined exactly like any other.
-//!
-//! The problem without friction tells which contacts are pressed: of `0 <= ṙ_n ⊥ ġ >= 0` with `ṙ_t = 0`, hundreds of
-//! contacts that touch without force leave few that stick or slip, whose combinations are guesses to examine.
 
-use crate::complementarity::rates::cartesian_product::combinations;
 use crate::complementarity::rates::gauss_seidel::{Local, rising};
 use crate::complementarity::rates::rate_problem::RateProblem;
 use crate::complementarity::rates::tolerances::{SMALLEST_PIVOT, TIE_TOLERANCE};
@@ -30,10 +26,7 @@ const MOST_COVERS: usize = 12;
 /// Largest number of pivots for each covering vector, per pair.
 const MOST_PIVOTS: usize = 10;
 /// Largest number of tableau entries that all pivots of one call may change; further covering vectors are not tried.
-const WORK: usize = 2_000_000_000;
-
-/// Largest number of contacts pressed without friction whose modes are all tried, 81 combinations.
-const MOST_PRESSED: usize = 4;
+pub(super) const WORK: usize = 2_000_000_000;
 
 /// A force, and the weight (with a sign) that is its complement.
 struct Pair {
@@ -69,81 +62,6 @@ pub fn lemke(problem: &RateProblem, cancel: &CancelFlag) -> Vec<Vec<usize>> {
     found
 }
 
-/// Guesses: the combinations in which the contacts stick or slip that are pressed where there is no friction.
-pub fn pressed(problem: &RateProblem, cancel: &CancelFlag) -> Vec<Vec<usize>> {
-    let locals: Option<Vec<Local>> = problem.entities.iter().map(|entity| Local::of(problem, entity)).collect();
-    let (Some(locals), Some(rising)) = (locals, rising(problem)) else { return Vec::new() };
-    let mut left = WORK;
-    let mut guesses = Vec::new();
-    for sign in [1.0, -1.0] {
-        if !cancel.is_cancelled() {
-            guesses.extend(pressed_without_friction(problem, &locals, sign * rising, &mut left));
-        }
-    }
-    guesses
-}
-
-/// The guesses for a load rate; none where many contacts are pressed, or all.
-fn pressed_without_friction(problem: &RateProblem, locals: &[Local], load: f64, left: &mut usize) -> Vec<Vec<usize>> {
-    let normals: Vec<(usize, usize)> = locals
-        .iter()
-        .map(|local| match *local {
-            Local::Pair { force, velocity } => (force, velocity),
-            Local::Touching { forms, normal, .. } => (forms.pressing, normal),
-        })
-        .collect();
-    let along: Vec<(usize, usize)> = locals
-        .iter()
-        .filter_map(|local| match *local {
-            Local::Pair { .. } => None,
-            Local::Touching { forms, tangential, .. } => Some((forms.traction, tangential)),
-        })
-        .collect();
-    if along.is_empty() {
-        return Vec::new();
-    }
-    let last = problem.weights() - 1;
-    let scale = |column: usize| 1.0 / problem.sizes[column].max(f64::MIN_POSITIVE);
-    let part = |rows: &[(usize, usize)], columns: &[(usize, usize)]| {
-        DMatrix::from_fn(rows.len(), columns.len() + 1, |row, column| {
-            let column = columns.get(column).map_or(last, |(_, column)| *column);
-            problem.forms[(rows[row].0, column)] * scale(column) * if column == last { load } else { 1.0 }
-        })
-    };
-    let _held = budget::take::<f64>(3 * (normals.len() + along.len()).pow(2));
-    budget::spend((normals.len() + along.len()).pow(2));
-    // The slips without friction follow from the normal velocities and the load.
-    let slips = part(&along, &along).columns(0, along.len()).into_owned().lu().solve(&part(&along, &normals));
-    let Some(slips) = slips else { return Vec::new() };
-    let mut forces = part(&normals, &normals) - part(&normals, &along).columns(0, along.len()) * slips;
-    for mut row in forces.row_iter_mut() {
-        let size = row.amax();
-        if size > 0.0 {
-            row /= size;
-        }
-    }
-    let count = normals.len();
-    let matrix = forces.columns(0, count).into_owned();
-    let constant: Vec<f64> = forces.column(count).iter().copied().collect();
-    let opens =
-        covers(&constant).into_iter().find_map(|cover| LemkeTableau::new(&matrix, &constant, &cover).solve(left));
-    let Some(opens) = opens else { return Vec::new() };
-    let options: Vec<Vec<usize>> = locals
-        .iter()
-        .zip(&opens)
-        .map(|(local, opens)| match (local, opens) {
-            (Local::Pair { .. }, opens) => vec![usize::from(*opens)],
-            (Local::Touching { .. }, true) => vec![3],
-            (Local::Touching { .. }, false) => vec![0, 1, 2],
-        })
-        .collect();
-    let pressed = options.iter().filter(|options| options.len() > 1).count();
-    if pressed > MOST_PRESSED || opens.iter().all(|opens| !opens) {
-        return Vec::new();
-    }
-    combinations(&options, u64::MAX).collect()
-}
-
 fn pairs_of(local: &Local) -> Vec<Pair> {
     match *local {
         Local::Pair { force, velocity } => vec![Pair { force, velocity, sign: 1.0 }],
@@ -176,7 +94,7 @@ fn coefficients(problem: &RateProblem, pairs: &[Pair]) -> (DMatrix<f64>, Vec<f64
 
 /// Positive covering vectors: uniform, by the constants, graded, and weighted towards single pairs where the load
 /// violates a bound.
-fn covers(constant: &[f64]) -> Vec<Vec<f64>> {
+pub(super) fn covers(constant: &[f64]) -> Vec<Vec<f64>> {
     let count = constant.len();
     let largest = constant.iter().fold(f64::MIN_POSITIVE, |largest, value| largest.max(value.abs()));
     let mut covers = vec![
@@ -218,14 +136,14 @@ fn options(locals: &[Local], positive: &[bool]) -> Vec<usize> {
 }
 
 /// The tableau `[w | z | z0 | q]`, one row per basic variable; the columns of `w` hold the inverse of the basis.
-struct LemkeTableau {
+pub(super) struct LemkeTableau {
     rows: DMatrix<f64>,
     basic: Vec<usize>,
     _held: Taken,
 }
 
 impl LemkeTableau {
-    fn new(matrix: &DMatrix<f64>, constant: &[f64], cover: &[f64]) -> Self {
+    pub fn new(matrix: &DMatrix<f64>, constant: &[f64], cover: &[f64]) -> Self {
         let count = constant.len();
         let held = budget::take::<f64>(count * (2 * count + 2));
         budget::spend(count * count);
@@ -242,7 +160,7 @@ impl LemkeTableau {
     }
 
     /// Which `z` are basic at the solution; `None` on a secondary ray, or where the bound on pivots is reached.
-    fn solve(mut self, left: &mut usize) -> Option<Vec<bool>> {
+    pub fn solve(mut self, left: &mut usize) -> Option<Vec<bool>> {
         let count = self.basic.len();
         let artificial = 2 * count;
         let answer = |basic: &[usize]| (0..count).map(|index| basic.contains(&(count + index))).collect();

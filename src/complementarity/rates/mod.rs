@@ -8,6 +8,7 @@
 //! | `p_matrix` | a sufficient test that each sign of the load rate has exactly one ray, and these rays |
 //! | `parametric_lcp` | all rays where one pair makes this test fail |
 //! | `lemke` | complementary pivoting |
+//! | `pressed_contacts` | guesses: the contacts that are pressed where there is no friction |
 //! | `gauss_seidel` | a likely combination for each sign of the load rate |
 //! | `combinations_near_vector` | combinations suggested by a known vector of weights |
 //! | `block_pivoting` | complementarity by changing all violated conditions at once |
@@ -20,6 +21,7 @@ pub(crate) mod gauss_seidel;
 pub(crate) mod lemke;
 pub(crate) mod p_matrix;
 pub(crate) mod parametric_lcp;
+pub(crate) mod pressed_contacts;
 pub(crate) mod rate_problem;
 pub(crate) mod ray_of_combination;
 pub(crate) mod simplex_dictionary;

@@ -1,6 +1,6 @@
 //! Data of a rate problem.
 
-use crate::complementarity::rates::tolerances::{RELATIVE_ROUND_OFF, SMALL_VELOCITY, SMALLEST_UNIT_OF_VELOCITY};
+use crate::complementarity::rates::tolerances::{RELATIVE_ROUND_OFF, SMALL_VELOCITY, SMALLEST_VELOCITY_SCALE};
 use crate::resources::budget;
 use nalgebra::{DMatrix, DVector, RowDVector};
 use std::fmt::Debug;
@@ -71,17 +71,17 @@ impl MotionOfWeights for DMatrix<f64> {
     }
 }
 
-/// A velocity that is a weight of its own, and the force that resists it.
-struct Resisted {
+/// A velocity that is a weight of its own, and the force that resists it: the forms of both, and the weight.
+struct ResistedVelocity {
     velocity: usize,
     weight: usize,
     force: usize,
 }
 
-/// What a velocity is compared with, where `natural` is the velocity that changes its force as much as forces change.
-pub(crate) fn unit_of_velocity(natural: f64) -> f64 {
-    // Where neither forces nor their coefficients are, the quotient is none.
-    if natural.is_nan() { 1.0 } else { (natural / SMALL_VELOCITY).clamp(SMALLEST_UNIT_OF_VELOCITY, 1.0) }
+/// The scale of velocities, of unit arc length, where those that matter are about `natural`: 1 unless they are small.
+pub(crate) fn velocity_scale(natural: f64) -> f64 {
+    // A quotient of no force and no stiffness tells nothing.
+    if natural.is_nan() { 1.0 } else { (natural / SMALL_VELOCITY).clamp(SMALLEST_VELOCITY_SCALE, 1.0) }
 }
 
 /// A rate problem: forms over the weights, and the entities.
@@ -108,38 +108,36 @@ impl RateProblem {
         self.forms.ncols()
     }
 
-    /// The stiff contacts: the form of each velocity that is a weight of its own, this weight, and the form of the force
-    /// that resists the velocity.
-    fn resisted(&self) -> impl Iterator<Item = Resisted> {
+    fn resisted_velocities(&self) -> impl Iterator<Item = ResistedVelocity> {
         let pairs = self.entities.iter().filter_map(Entity::conjugates).flatten();
         pairs.filter_map(|[force, velocity]| {
             let is_resisted = self.is_force[force.form] && !self.is_force[velocity.form];
             let weight = own_column(self, velocity.form).filter(|_| is_resisted)?;
-            Some(Resisted { velocity: velocity.form, weight, force: force.form })
+            Some(ResistedVelocity { velocity: velocity.form, weight, force: force.form })
         })
     }
 
-    /// What the velocity of each form is compared with, where rates of force are at most `largest`: unit arc length, or
-    /// a part of it where a far smaller velocity changes its force by as much.
-    pub(crate) fn units_of_velocity(&self, largest: f64) -> Vec<f64> {
-        let mut units = vec![1.0; self.forms.nrows()];
-        for one in self.resisted() {
-            units[one.velocity] = unit_of_velocity(largest / self.forms[(one.force, one.weight)].abs());
+    /// The scale of each form that is a velocity, where rates of force are at most `largest`: the velocity of a stiff
+    /// contact is compared with the one that changes its force by as much.
+    pub(crate) fn velocity_scales(&self, largest: f64) -> Vec<f64> {
+        let mut scales = vec![1.0; self.forms.nrows()];
+        for one in self.resisted_velocities() {
+            scales[one.velocity] = velocity_scale(largest / self.forms[(one.force, one.weight)].abs());
         }
-        units
+        scales
     }
 
-    /// Makes the motion of the last weight, which moves no contact, comparable with those of contacts that resist far
-    /// smaller velocities.
-    pub(crate) fn balance(&mut self) {
+    /// Reduces the size of the last weight, along which no contact of the others moves, to that of the velocities by which
+    /// stiff contacts resist it.
+    pub(crate) fn rescale_last_weight(&mut self) {
         let last = self.weights() - 1;
-        let comparable = self.resisted().map(|one| {
+        let comparable = self.resisted_velocities().map(|one| {
             let [own, other] = [last, one.weight].map(|weight| self.forms[(one.force, weight)].abs());
             own * self.sizes[one.weight] / other
         });
         let largest = comparable.fold(0.0, f64::max);
         if largest > 0.0 {
-            self.sizes[last] *= unit_of_velocity(largest / self.sizes[last]);
+            self.sizes[last] *= velocity_scale(largest / self.sizes[last]);
         }
     }
 

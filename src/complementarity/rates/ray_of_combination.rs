@@ -126,8 +126,8 @@ pub(crate) fn edges(problem: &RateProblem, chosen: &[usize], basis: &DMatrix<f64
 pub(crate) fn forms_along<'a>(problem: &'a RateProblem, weights: &DVector<f64>) -> Along<'a> {
     budget::spend((problem.forms.nrows() + 2 * problem.reactions.nrows()) * problem.weights());
     let forces = forces(problem, weights);
-    let units_of_velocity = problem.units_of_velocity(forces.largest);
-    Along { problem, values: &problem.forms * weights, forces, units_of_velocity }
+    let velocity_scales = problem.velocity_scales(forces.largest);
+    Along { problem, values: &problem.forms * weights, forces, velocity_scales }
 }
 
 /// The forms and forces along a vector of weights of unit arc length.
@@ -136,8 +136,8 @@ pub(crate) struct Along<'a> {
     /// Value of each form.
     values: DVector<f64>,
     forces: Forces,
-    /// What the velocity of each form is compared with.
-    units_of_velocity: Vec<f64>,
+    /// The scale of each form that is a velocity.
+    velocity_scales: Vec<f64>,
 }
 
 impl Along<'_> {
@@ -162,7 +162,7 @@ impl Along<'_> {
 
     /// The tolerance below which the velocity of a form counts as zero.
     pub fn velocity_tolerance(&self, form: usize) -> f64 {
-        RATE_TOLERANCE * self.units_of_velocity[form]
+        RATE_TOLERANCE * self.velocity_scales[form]
     }
 
     /// The options of each entity under which a ray, found under the chosen options, is feasible. As each option
@@ -180,7 +180,7 @@ impl Along<'_> {
         let (values, is_force) = (&self.values, &self.problem.is_force);
         let fits = |entity: &Entity, choice: &Choice| {
             let force = self.forces.tolerance(entity, values, tolerance);
-            let velocity = |form: usize| tolerance * self.units_of_velocity[form];
+            let velocity = |form: usize| tolerance * self.velocity_scales[form];
             let tolerance = |form: usize| if is_force[form] { force } else { velocity(form) };
             choice.zero.iter().all(|&form| values[form].abs() <= tolerance(form))
                 && choice.nonnegative.iter().all(|signed| signed.sign * values[signed.form] >= -tolerance(signed.form))

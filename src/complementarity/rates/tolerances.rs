@@ -89,15 +89,14 @@ pub(crate) const RANK_TOLERANCE: f64 = 1e-11;
 /// examined exactly, so that the value affects effort only.
 pub(crate) const MISFIT_TIE: f64 = 1e-6;
 
-/// Velocity, of unit arc length, below which a velocity that changes its force as much as other forces change is small:
-/// velocities of its contact are then compared with it. A stiff contact slips little while the rest of a structure
-/// moves or its load rises, and velocities of 1e-10 decide. The value is a heuristic: where it does not apply, a
-/// velocity that counts as zero changes its force by at most 1e-7 of the forces.
+/// Velocity (of unit arc length) below which the scale of velocities decreases with it. A stiff contact slips little while
+/// the rest of a structure moves or its load rises, and velocities of 1e-10 decide. The value is a heuristic: above it, a
+/// velocity that counts as zero changes its force by at most 1e-7 of the largest.
 pub(crate) const SMALL_VELOCITY: f64 = 1e-2;
 
-/// Smallest unit of velocity. Round-off of velocities is some 1e-16 times the conditioning; with the tolerance 1e-9 the
-/// value leaves 1e-13 for it.
-pub(crate) const SMALLEST_UNIT_OF_VELOCITY: f64 = 1e-4;
+/// Smallest scale of velocities. With the tolerance 1e-9 on rates, velocities up to 1e-13 count as zero: the accuracy to
+/// which the end of a slip is located, a thousand times unit round-off.
+pub(crate) const SMALLEST_VELOCITY_SCALE: f64 = 1e-4;
 
 /// Largest difference of the rates of force of two rays, relative to the largest, at which the rays may be equal. Rays
 /// whose weights agree to 1e-9 have forces that agree to 1e-7, unless a contact is so stiff that they differ.

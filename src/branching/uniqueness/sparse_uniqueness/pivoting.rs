@@ -8,7 +8,7 @@ use crate::branching::directions::tolerances::WEAK_MARGIN;
 use crate::branching::uniqueness::sparse_uniqueness::proof::DistinguishingQuantity;
 use crate::branching::uniqueness::sparse_uniqueness::sparse_rate_equations::{ChangingContact, Equations};
 use crate::complementarity::rates::block_pivoting::{self, RoundResult, Rounds};
-use crate::complementarity::rates::rate_problem::unit_of_velocity;
+use crate::complementarity::rates::rate_problem::velocity_scale;
 use crate::complementarity::rates::tolerances::DOUBTFUL_RATE;
 use crate::mechanics::contact::vector::{Vector, dot, scaled};
 use crate::mechanics::contact::{Mode, Reaction, all_continue};
@@ -219,7 +219,7 @@ fn margin(equations: &Equations<'_>, one: &ChangingContact, mode: Mode, rate: &R
         WEAK_MARGIN * largest
     } else {
         let column = one.column + usize::from(one.direction.is_none() && mode == Mode::Free);
-        WEAK_MARGIN * unit_of_velocity(largest / equations.stiffness(column))
+        WEAK_MARGIN * velocity_scale(largest / equations.stiffness(column))
     };
     let (margin, other) = match (mode, one.direction) {
         (Mode::Stick, Some(direction)) => {
