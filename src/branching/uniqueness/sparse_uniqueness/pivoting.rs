@@ -185,66 +185,55 @@ fn violations(equations: &Equations<'_>, modes: &[Mode], rate: &Rate) -> (Vec<(u
     let largest = rate.largest_reaction().max(f64::MIN_POSITIVE);
     let (mut changes, mut doubts) = (Vec::new(), Vec::new());
     for one in &equations.changing {
-        let (margin, tolerance, other) = margin(equations, one, modes[one.contact], rate, largest);
-        if margin < -tolerance {
+        let (margin, other) = margin(equations, one, modes[one.contact], rate, largest);
+        if margin < -WEAK_MARGIN {
             changes.push((one.contact, other));
-        } else if margin <= DOUBTFUL_RATE / WEAK_MARGIN * tolerance {
-            doubts.push(Doubt { contact: one.contact, direction: one.direction, weak: margin <= tolerance });
+        } else if margin <= DOUBTFUL_RATE {
+            doubts.push(Doubt { contact: one.contact, direction: one.direction, weak: margin <= WEAK_MARGIN });
         }
     }
     changes.sort_unstable_by_key(|(contact, _)| *contact);
     (changes, doubts)
 }
 
-fn speed(equations: &Equations<'_>, one: &ChangingContact, direction: &Vector, rate: &Rate) -> f64 {
-    dot(direction, &equations.loading.relative_rate(one.contact, equations.state, rate))
-}
-
 /// For each contact that can change, whether the nonnegative quantity of its mode is positive beyond round-off.
 pub(super) fn strict(equations: &Equations<'_>, candidate: &CandidateDirection) -> Vec<bool> {
     let rate = &candidate.rate;
     let largest = rate.largest_reaction().max(f64::MIN_POSITIVE);
-    let is_strict = |one: &ChangingContact| {
-        let (margin, tolerance, _) = margin(equations, one, candidate.modes[one.contact], rate, largest);
-        margin > tolerance
-    };
+    let is_strict =
+        |one: &ChangingContact| margin(equations, one, candidate.modes[one.contact], rate, largest).0 > WEAK_MARGIN;
     equations.changing.iter().map(is_strict).collect()
 }
 
-/// The smallest of the nonnegative quantities of a mode, its round-off where rates of force are at most `largest`, and the
-/// mode to try where it is negative.
-fn margin(equations: &Equations<'_>, one: &ChangingContact, mode: Mode, rate: &Rate, largest: f64) -> (f64, f64, Mode) {
+/// The smallest of the nonnegative quantities of a mode, each relative to its scale, where rates of force are at most
+/// `largest`, and the mode to try where it is negative.
+fn margin(equations: &Equations<'_>, one: &ChangingContact, mode: Mode, rate: &Rate, largest: f64) -> (f64, Mode) {
     let (reaction, data) = (&rate.reactions[one.contact], &equations.loading.contacts[one.contact]);
-    let tolerance = if matches!(mode, Mode::Stick) || data.tangents() == 0 && mode != Mode::Free {
-        WEAK_MARGIN * largest
-    } else {
-        let column = one.column + usize::from(one.direction.is_none() && mode == Mode::Free);
-        WEAK_MARGIN * velocity_scale(largest / equations.stiffness(column))
+    let force = |value: f64| value / largest;
+    let speed = |direction: &Vector, column: usize| {
+        let speed = dot(direction, &equations.loading.relative_rate(one.contact, equations.state, rate));
+        speed / velocity_scale(largest / equations.stiffness(column))
     };
-    let (margin, other) = match (mode, one.direction) {
-        (Mode::Stick, Some(direction)) => {
-            let left = data.friction.slack(reaction, &direction);
-            (left, Mode::Slip { direction })
-        }
-        (Mode::Slip { .. }, Some(direction)) => (speed(equations, one, &direction, rate), Mode::Stick),
+    match (mode, one.direction) {
+        (Mode::Stick, Some(direction)) => (force(data.friction.slack(reaction, &direction)), Mode::Slip { direction }),
+        (Mode::Slip { .. }, Some(direction)) => (speed(&direction, one.column), Mode::Stick),
         (Mode::Stick, None) => {
             let traction = dot(&reaction.tangential, &one.frame.tangents[0]);
             let against = scaled(&one.frame.tangents[0], if traction > 0.0 { -1.0 } else { 1.0 });
             let other = if reaction.normal < 0.0 { Mode::Free } else { Mode::Slip { direction: against } };
-            (data.friction.bound(reaction.normal) - traction.abs(), other)
+            (force(data.friction.bound(reaction.normal) - traction.abs()), other)
         }
-        (Mode::Slip { .. }, None) if data.tangents() == 0 => (reaction.normal, Mode::Free),
+        (Mode::Slip { .. }, None) if data.tangents() == 0 => (force(reaction.normal), Mode::Free),
         (Mode::Slip { direction }, None) => {
-            let speed = speed(equations, one, &direction, rate);
             let other = if reaction.normal < 0.0 { Mode::Free } else { Mode::Stick };
-            (speed.min(reaction.normal), other)
+            (speed(&direction, one.column).min(force(reaction.normal)), other)
         }
         (Mode::Free, _) => {
             let closed = if data.tangents() > 0 { Mode::Stick } else { Mode::Slip { direction: [0.0; 3] } };
-            (speed(equations, one, &one.frame.normal, rate), closed)
+            // Of a touching contact the column of the tangential velocity comes first.
+            (speed(&one.frame.normal, one.column + usize::from(one.direction.is_none())), closed)
         }
-    };
-    (margin, tolerance, other)
+    }
 }
 
 /// The candidate with alternatives for the contacts that may be in another mode, exactly or nearly at first order;
