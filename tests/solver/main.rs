@@ -28,6 +28,7 @@ mod folded_slip;
 mod forces;
 mod frame_extremes;
 mod frames;
+mod heavy_string;
 mod held_beyond_slides;
 mod hidden_events;
 mod invariance;
